@@ -1,0 +1,160 @@
+//! The film: per-pixel sums in f64, samples grouped into rounds, and what can be said of their error.
+//!
+//! Samples come in rounds of [`ROUND`] samples; each round has its own randomisation, so round means are independent
+//! and their spread tells the standard error of the pixel. A pixel keeps its sum, the M2 of its rounds (Welford) and
+//! the round that is being filled: 72 bytes. A film is cut into tiles; a tile is worked on by one thread at a time and
+//! keeps its own sample count, so that interrupted renders may differ between tiles.
+
+mod image;
+
+pub use image::Image;
+
+use crate::settings::Rect;
+
+/// Samples in a round; a power of two.
+pub const ROUND: u32 = 16;
+
+/// Running sums of one pixel, per channel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pixel {
+    /// Sum of all samples.
+    pub sum: [f64; 3],
+    /// Sum of squared deviations of the means of the complete rounds.
+    pub m2: [f64; 3],
+    /// Sum of the samples of the round that is not complete yet.
+    pub round: [f64; 3],
+}
+
+impl Pixel {
+    /// Adds sample number `index` (from 0) of this pixel.
+    pub fn add(&mut self, index: u32, radiance: [f32; 3]) {
+        let done = f64::from(index / ROUND);
+        let completes = (index + 1).is_multiple_of(ROUND);
+        for channel in 0..3 {
+            let value = f64::from(radiance[channel]);
+            self.sum[channel] += value;
+            self.round[channel] += value;
+            if completes {
+                let round = f64::from(ROUND);
+                let mean = self.sum[channel] / (round * (done + 1.0));
+                let before = if done > 0.0 { (self.sum[channel] - self.round[channel]) / (round * done) } else { mean };
+                let of_round = self.round[channel] / round;
+                self.m2[channel] += (of_round - before) * (of_round - mean);
+                self.round[channel] = 0.0;
+            }
+        }
+    }
+
+    /// Mean of `samples` samples; 0 for none.
+    pub fn mean(&self, samples: u32) -> [f64; 3] {
+        self.sum.map(|sum| if samples == 0 { 0.0 } else { sum / f64::from(samples) })
+    }
+
+    /// Variance of the mean of `samples` samples, from the complete rounds; `None` with fewer than two.
+    pub fn variance_of_mean(&self, samples: u32) -> Option<[f64; 3]> {
+        let rounds = f64::from(samples / ROUND);
+        if rounds < 2.0 {
+            return None;
+        }
+        let scale = f64::from(ROUND) / f64::from(samples);
+        Some(self.m2.map(|m2| (m2 / (rounds - 1.0)).max(0.0) * scale))
+    }
+}
+
+/// What is known of a pixel: its value and how sure it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// Mean of the samples.
+    pub mean: [f64; 3],
+    /// Variance of that mean.
+    pub variance: [f64; 3],
+    /// Complete rounds behind the variance, at least 2.
+    pub rounds: u32,
+}
+
+/// A rectangle of the film with its own sample count.
+#[derive(Clone, Debug)]
+pub struct Tile {
+    /// Where it lies in the whole image.
+    pub area: Rect,
+    /// Samples that every pixel of the tile has.
+    pub samples: u32,
+    /// Its pixels, row by row from the top.
+    pub pixels: Vec<Pixel>,
+}
+
+/// The film of a render.
+#[derive(Clone, Debug)]
+pub struct Film {
+    /// The part of the image that is rendered.
+    pub area: Rect,
+    /// Tiles, row by row; together they cover the area.
+    pub tiles: Vec<Tile>,
+}
+
+impl Film {
+    /// An empty film over `area`, in tiles of at most `tile` × `tile` pixels.
+    ///
+    /// # Panics
+    /// With a tile size of 0.
+    pub fn new(area: Rect, tile: u32) -> Self {
+        let mut tiles = Vec::new();
+        for y in (0..area.height).step_by(tile as usize) {
+            for x in (0..area.width).step_by(tile as usize) {
+                let size = Rect {
+                    x: area.x + x,
+                    y: area.y + y,
+                    width: tile.min(area.width - x),
+                    height: tile.min(area.height - y),
+                };
+                tiles.push(Tile { area: size, samples: 0, pixels: vec![Pixel::default(); size.pixels()] });
+            }
+        }
+        Self { area, tiles }
+    }
+
+    /// Fewest and most samples of any tile.
+    pub fn samples(&self) -> (u32, u32) {
+        let counts = self.tiles.iter().map(|tile| tile.samples);
+        (counts.clone().min().unwrap_or(0), counts.max().unwrap_or(0))
+    }
+
+    /// The linear image so far; pixels without samples are black.
+    pub fn develop(&self) -> Image {
+        let mut image = Image::black(self.area.width, self.area.height);
+        for tile in &self.tiles {
+            self.for_each(tile, |index, pixel| image.pixels[index] = pixel.mean(tile.samples).map(|v| v as f32));
+        }
+        image
+    }
+
+    /// One estimate a pixel in image order, or `None` while some tile has fewer than two complete rounds.
+    pub fn estimates(&self) -> Option<Vec<Estimate>> {
+        let unknown = Estimate { mean: [0.0; 3], variance: [0.0; 3], rounds: 0 };
+        let mut estimates = vec![unknown; self.area.pixels()];
+        for tile in &self.tiles {
+            if tile.samples < 2 * ROUND {
+                return None;
+            }
+            self.for_each(tile, |index, pixel| {
+                estimates[index] = Estimate {
+                    mean: pixel.mean(tile.samples),
+                    variance: pixel.variance_of_mean(tile.samples).unwrap_or_default(),
+                    rounds: tile.samples / ROUND,
+                };
+            });
+        }
+        Some(estimates)
+    }
+
+    /// Calls `visit` with the image index and the sums of every pixel of `tile`.
+    fn for_each(&self, tile: &Tile, mut visit: impl FnMut(usize, &Pixel)) {
+        for (row, pixels) in tile.pixels.chunks_exact(tile.area.width as usize).enumerate() {
+            let y = (tile.area.y - self.area.y) as usize + row;
+            let start = y * self.area.width as usize + (tile.area.x - self.area.x) as usize;
+            for (column, pixel) in pixels.iter().enumerate() {
+                visit(start + column, pixel);
+            }
+        }
+    }
+}

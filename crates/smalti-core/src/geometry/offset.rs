@@ -1,0 +1,26 @@
+//! Leaving a surface without hitting it again.
+
+use crate::lanes::{Lanes, V3};
+
+/// Bound on the error of a refined hit point along its normal, relative to the largest coordinate: 2⁻²⁴ times about
+/// twice the γ(7) of pbrt's analysis, plus the neighbour's share.
+const ERROR: f32 = 24.0 / 16_777_216.0;
+
+/// The point from where rays leave to the side of `normal`: moved out by the bound on its error.
+#[inline(always)]
+pub fn leave<L: Lanes>(l: L, point: V3<L>, normal: V3<L>) -> V3<L> {
+    point.along(l, point.max_abs(l) * l.f(ERROR), normal)
+}
+
+/// A hit at distance `t` of a ray, moved onto the plane n·x = d that it hit.
+#[inline(always)]
+pub fn onto_plane<L: Lanes>(l: L, point: V3<L>, normal: V3<L>, offset: L::F) -> V3<L> {
+    point.along(l, offset - normal.dot(l, point), normal)
+}
+
+/// A hit of a ray, moved onto the sphere that it hit, and the unit normal there.
+#[inline(always)]
+pub fn onto_sphere<L: Lanes>(l: L, point: V3<L>, centre: V3<L>, radius: L::F) -> (V3<L>, V3<L>) {
+    let normal = (point - centre).normalised(l);
+    (centre.along(l, radius, normal), normal)
+}

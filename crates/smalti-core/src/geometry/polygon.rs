@@ -1,0 +1,49 @@
+//! The plane of a face against a ray.
+
+use super::Ray;
+use crate::lanes::{Lanes, V3};
+
+/// Below this |cosine| (relative to the direction's largest component) a ray grazes and the distance is clamped to the
+/// face's box.
+const GRAZING: f32 = 1.0 / 128.0;
+
+/// Distance to the plane, in units of the direction, and the lanes that graze it. The error of a distance that does
+/// not graze is below [`SLACK`](crate::accel::SLACK).
+#[inline(always)]
+pub fn distance<L: Lanes>(l: L, ray: &Ray<L>, normal: V3<L>, offset: L::F) -> (L::F, L::M) {
+    let cosine = normal.dot(l, ray.direction);
+    let height = offset - normal.dot(l, ray.origin);
+    (height / cosine, l.lt(l.abs(cosine), ray.major * l.f(GRAZING)))
+}
+
+/// `t` clamped to where the ray is inside the box: a grazing ray's distance is ill-conditioned, but the hit cannot lie
+/// outside the face's box. The same arithmetic as the tree's box test, so the tree never culls a hit of the list.
+#[inline(always)]
+pub fn clamp_to_box<L: Lanes>(l: L, ray: &Ray<L>, t: L::F, low: V3<L>, high: V3<L>) -> L::F {
+    let inverse = inverse_direction(l, ray.direction);
+    let (near, far) = slab(l, ray.origin, inverse, low, high);
+    l.max(l.min(t, far), near)
+}
+
+/// 1 / d with ±MAX in place of ±∞, so that 0 · ∞ cannot arise.
+#[inline(always)]
+pub fn inverse_direction<L: Lanes>(l: L, d: V3<L>) -> V3<L> {
+    V3::new(inverse(l, d.x), inverse(l, d.y), inverse(l, d.z))
+}
+
+#[inline(always)]
+fn inverse<L: Lanes>(l: L, x: L::F) -> L::F {
+    let tiny = l.lt(l.abs(x), l.f(f32::MIN_POSITIVE));
+    l.select(tiny, l.copysign(l.f(f32::MAX), x), l.f(1.0) / x)
+}
+
+/// Interval of t inside the box (low, high): monotone in the box, so a larger box never gives a smaller interval.
+#[inline(always)]
+pub fn slab<L: Lanes>(l: L, origin: V3<L>, inverse: V3<L>, low: V3<L>, high: V3<L>) -> (L::F, L::F) {
+    let (x0, x1) = ((low.x - origin.x) * inverse.x, (high.x - origin.x) * inverse.x);
+    let (y0, y1) = ((low.y - origin.y) * inverse.y, (high.y - origin.y) * inverse.y);
+    let (z0, z1) = ((low.z - origin.z) * inverse.z, (high.z - origin.z) * inverse.z);
+    let near = l.max(l.min(x0, x1), l.max(l.min(y0, y1), l.min(z0, z1)));
+    let far = l.min(l.max(x0, x1), l.min(l.max(y0, y1), l.max(z0, z1)));
+    (near, far)
+}

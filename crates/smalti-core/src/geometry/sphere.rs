@@ -1,0 +1,34 @@
+//! Ray against sphere, in the form of Haines, Günther and Akenine-Möller (Ray Tracing Gems, ch. 7, 2019): the
+//! discriminant from the point of closest approach, which keeps its digits far away where the report's eq. 20 loses them.
+
+use super::Ray;
+use crate::lanes::{Lanes, V3};
+
+/// Smallest distance > 0 at which the ray meets the sphere, in units of its direction; +∞ where it does not.
+///
+/// A ray that leaves this very sphere starts on it: one root is 0 by construction and only the other is asked for, so
+/// nothing depends on the rounding of the start point.
+#[inline(always)]
+pub fn hit<L: Lanes>(l: L, ray: &Ray<L>, centre: V3<L>, radius: L::F, leaves_it: L::M) -> L::F {
+    let never = l.f(f32::INFINITY);
+    let d = ray.direction;
+    let f = ray.origin - centre;
+    let a = d.dot(l, d);
+    let b = -f.dot(l, d);
+    let zero = l.f(0.0);
+    let closest = f.along(l, b / a, d);
+    let discriminant = l.fma(radius, radius, -closest.dot(l, closest));
+    let meets = l.lt(zero, discriminant);
+    if !l.any(meets | leaves_it) {
+        return never;
+    }
+    let root = l.sqrt(l.max(a * discriminant, zero));
+    let q = b + l.copysign(root, b);
+    let c = f.dot(l, f) - radius * radius;
+    let (t0, t1) = (c / q, q / a);
+    let (near, far) = (l.min(t0, t1), l.max(t0, t1));
+    let first = l.select(l.lt(zero, near), near, far);
+    let other = (b + b) / a;
+    let t = l.select(leaves_it, other, l.select(meets, first, never));
+    l.select(l.lt(zero, t), t, never)
+}

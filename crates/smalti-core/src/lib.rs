@@ -1,0 +1,14 @@
+//! Light transport: a [`World`](scene::World) becomes radiance. No files, no clock, no terminal.
+
+pub mod accel;
+pub mod bsdf;
+pub mod film;
+pub mod geometry;
+pub mod lanes;
+pub mod light;
+pub mod plan;
+pub mod render;
+pub mod sampling;
+pub mod scene;
+pub mod settings;
+pub mod stream;

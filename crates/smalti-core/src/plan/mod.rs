@@ -1,0 +1,149 @@
+//! The plan: what of the renderer a scene and its settings require, with the reason for each decision.
+//!
+//! [`Plan::new`] is pure and the only place that decides. A plan is a list of stages; the executor runs them one after
+//! the other, bounce by bounce, and knows nothing else.
+
+mod reasons;
+
+use crate::accel::{List, occluders};
+use crate::light::table::Kind;
+use crate::scene::{Class, Scene};
+use crate::settings::{Fresnel, Integrator, SamplerKind, Settings};
+use crate::stream::Columns;
+use crate::stream::mirror::Ending;
+
+/// Bounces after which a path is ended and counted, whatever the settings say.
+pub const MOST_BOUNCES: u32 = 4096;
+
+/// Whitted: a branch that counts for less in the picture than this is not followed (report §1.1).
+pub const LEAST_CONTRIBUTION: f32 = 1.0 / 1024.0;
+
+/// One stage of a bounce.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stage {
+    /// What every ray hits.
+    Intersect,
+    /// Hits to the streams of the stages that follow.
+    Sort,
+    /// Radiance of emitters that were hit.
+    Emission,
+    /// Radiance from infinity.
+    Environment,
+    /// Diffuse vertices from diffuse hits.
+    Surface,
+    /// Light samples at diffuse vertices.
+    Direct {
+        /// Whether weighed against scattered rays.
+        weighed: bool,
+    },
+    /// The diffuse bounce.
+    Diffuse,
+    /// Reflection.
+    Mirror(Ending),
+    /// Reflection or refraction, by chance.
+    Dielectric(Fresnel, SamplerKind),
+    /// Reflection and refraction, as a tree.
+    Split(Fresnel),
+}
+
+/// What cannot be planned: a contradiction between scene and settings, in the user's words.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{message}")]
+pub struct PlanError {
+    /// What is wrong and what can be done.
+    pub message: String,
+}
+
+/// One thing that the plan decided, and why.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Decision {
+    /// The part of the renderer: `accelerator`, `stage`, `occluders`, `lights` ...
+    pub subject: &'static str,
+    /// What is used, for example `list of 15 primitives`.
+    pub choice: String,
+    /// Why.
+    pub reason: String,
+    /// Memory that it takes in all, bytes (0 where that is nothing worth a line).
+    pub bytes: u64,
+}
+
+/// What a render will do.
+pub struct Plan {
+    /// Stages of a bounce, in order.
+    pub stages: Vec<Stage>,
+    /// Optional columns of the streams.
+    pub columns: Columns,
+    /// Scattering events after which paths end.
+    pub max_bounces: u32,
+    /// Everything, as rays meet it.
+    pub everything: List,
+    /// What can stop a shadow ray.
+    pub occluders: List,
+    /// The decisions with their reasons.
+    pub decisions: Vec<Decision>,
+}
+
+impl Plan {
+    /// Decides what this scene with these settings requires.
+    ///
+    /// # Errors
+    /// Settings under which part of the light could not be found.
+    pub fn new(scene: &Scene, settings: &Settings) -> Result<Self, PlanError> {
+        check(scene, settings)?;
+        let prims = scene.shades.len() as u32;
+        let everything = List::new(scene, 0..prims).expect("fits");
+        let occluders = List::new(scene, occluders::of(scene)).expect("fits");
+        let (stages, columns) = (stages(scene, settings), columns(scene, settings));
+        let max_bounces = settings.max_bounces.unwrap_or(MOST_BOUNCES).min(MOST_BOUNCES);
+        let mut plan = Self { stages, columns, max_bounces, everything, occluders, decisions: Vec::new() };
+        plan.decisions = reasons::of(&plan, scene, settings);
+        Ok(plan)
+    }
+
+    /// Whether some stage of the plan meets `test`.
+    pub fn has(&self, test: impl Fn(&Stage) -> bool) -> bool {
+        self.stages.iter().any(test)
+    }
+}
+
+fn check(scene: &Scene, settings: &Settings) -> Result<(), PlanError> {
+    if settings.shadow_rays == 0 && scene.lights.has(Kind::Point) {
+        let message = "a point light can only be found by shadow rays, but `shadow_rays` is 0: \
+                       set it to 1 or more, or give the light an extent";
+        return Err(PlanError { message: message.into() });
+    }
+    if settings.shadow_rays == 0 && settings.integrator == Integrator::Whitted && !scene.lights.rows.is_empty() {
+        let message = "`whitted` finds direct light by shadow rays alone, but `shadow_rays` is 0: set it to 1 or more";
+        return Err(PlanError { message: message.into() });
+    }
+    Ok(())
+}
+
+/// Stages in the order in which they run.
+fn stages(scene: &Scene, settings: &Settings) -> Vec<Stage> {
+    let path = settings.integrator == Integrator::Path;
+    let lambert = scene.has(Class::Lambert);
+    let samples_lights = lambert && settings.shadow_rays > 0 && !scene.lights.rows.is_empty();
+    let fresnel = settings.fresnel;
+    let glass = if path { Stage::Dielectric(fresnel, settings.sampler) } else { Stage::Split(fresnel) };
+    let ending = if path { Ending::Roulette(settings.sampler) } else { Ending::Threshold(LEAST_CONTRIBUTION) };
+    [
+        (Stage::Intersect, true),
+        (Stage::Sort, true),
+        (Stage::Emission, !scene.lights.emitters.is_empty()),
+        (Stage::Environment, scene.environment.is_some()),
+        (Stage::Surface, lambert && (path || samples_lights)),
+        (Stage::Direct { weighed: path }, samples_lights),
+        (Stage::Diffuse, lambert && path),
+        (Stage::Mirror(ending), scene.has(Class::Mirror)),
+        (glass, scene.has(Class::Dielectric)),
+    ]
+    .into_iter()
+    .filter_map(|(stage, needed)| needed.then_some(stage))
+    .collect()
+}
+
+fn columns(scene: &Scene, settings: &Settings) -> Columns {
+    let two_ways = settings.shadow_rays > 0 && !scene.lights.emitters.is_empty() && scene.has(Class::Lambert);
+    Columns { pdf: two_ways && settings.integrator == Integrator::Path, eta: scene.has(Class::Dielectric) }
+}

@@ -1,0 +1,133 @@
+//! The plan in words: each decision with its reason, for `explain`.
+
+use super::{Decision, MOST_BOUNCES, Plan, Stage};
+use crate::film::Pixel;
+use crate::scene::{Class, Scene};
+use crate::settings::{Integrator, Settings};
+
+/// Everything that was decided.
+pub fn of(plan: &Plan, scene: &Scene, settings: &Settings) -> Vec<Decision> {
+    let mut decisions = vec![accelerator(plan, scene)];
+    decisions.extend(occluders(plan, scene));
+    decisions.extend(lights(scene));
+    decisions.extend(plan.stages.iter().map(|stage| stage_reason(stage, scene, settings)));
+    decisions.extend(absent(plan, scene));
+    decisions.push(columns(plan));
+    decisions.push(ending(plan, settings));
+    decisions.push(film(settings));
+    decisions
+}
+
+fn decision(subject: &'static str, choice: impl Into<String>, reason: impl Into<String>, bytes: u64) -> Decision {
+    Decision { subject, choice: choice.into(), reason: reason.into(), bytes }
+}
+
+fn accelerator(plan: &Plan, scene: &Scene) -> Decision {
+    let bytes = (scene.shades.len() * 44 + scene.faces.len() * 28 + scene.vertices.len() * 12) as u64;
+    let choice = format!("list of {} primitives", plan.everything.len());
+    decision("accelerator", choice, "few enough that testing all of them for many rays at a time is fastest", bytes)
+}
+
+fn occluders(plan: &Plan, scene: &Scene) -> Option<Decision> {
+    plan.has(|stage| matches!(stage, Stage::Direct { .. })).then(|| {
+        let choice = format!("{} of {} primitives", plan.occluders.len(), scene.shades.len());
+        let reason = "the others have everything on one side, or all lights in their plane: they stop no shadow ray";
+        decision("occluders", choice, reason, 0)
+    })
+}
+
+fn lights(scene: &Scene) -> Option<Decision> {
+    let rows = scene.lights.rows.len();
+    match rows {
+        0 => None,
+        1 => Some(decision("lights", "1 light, no choice", "a choice table is needed only with several", 0)),
+        _ => Some(decision(
+            "lights",
+            format!("{rows} lights, chosen by power"),
+            "one light sample goes to one light",
+            rows as u64 * 76,
+        )),
+    }
+}
+
+fn stage_reason(stage: &Stage, scene: &Scene, settings: &Settings) -> Decision {
+    let count = |class: Class| {
+        let mask = (1 << Class::BITS) - 1;
+        scene.classes.iter().filter(|code| *code & mask == class as u32).count()
+    };
+    let of = |class: Class, name: &str| format!("{} {name} primitives", count(class));
+    let rays = settings.shadow_rays;
+    let (choice, reason) = match stage {
+        Stage::Intersect => ("intersect", "every ray hits something or nothing".into()),
+        Stage::Sort => ("sort", "one stream for each stage that follows".into()),
+        Stage::Emission => ("emission", format!("{} primitives emit", scene.lights.emitters.len())),
+        Stage::Environment => ("environment", "light arrives from infinity; scattered rays find it".into()),
+        Stage::Surface => ("surface", of(Class::Lambert, "diffuse")),
+        Stage::Direct { weighed: true } => {
+            ("direct light", format!("{rays} light samples a vertex, weighed against the scattered ray"))
+        }
+        Stage::Direct { weighed: false } => ("direct light", format!("{rays} light samples a vertex")),
+        Stage::Diffuse => ("diffuse bounce", "indirect light by cosine-distributed rays".into()),
+        Stage::Mirror(_) => ("mirror", of(Class::Mirror, "mirror")),
+        Stage::Dielectric(..) => ("dielectric", of(Class::Dielectric, "dielectric")),
+        Stage::Split(_) => ("dielectric tree", of(Class::Dielectric, "dielectric")),
+    };
+    decision("stage", choice, reason, 0)
+}
+
+/// What a reader might look for and the scene does not use.
+fn absent(plan: &Plan, scene: &Scene) -> Vec<Decision> {
+    let mut absent = Vec::new();
+    let mut note = |missing: bool, name: &str, reason: &str| {
+        if missing {
+            absent.push(decision("left out", name, reason, 0));
+        }
+    };
+    note(!scene.has(Class::Mirror), "mirror", "no primitive is a mirror");
+    note(!scene.has(Class::Dielectric), "dielectric", "no primitive is a dielectric");
+    note(scene.environment.is_none(), "environment", "nothing arrives from infinity");
+    note(scene.lights.rows.is_empty(), "direct light", "the scene has no light with a place");
+    note(
+        !plan.has(|stage| *stage == Stage::Diffuse) && scene.has(Class::Lambert),
+        "diffuse bounce",
+        "whitted has no indirect diffuse light: the picture is darker than the truth",
+    );
+    absent
+}
+
+fn columns(plan: &Plan) -> Decision {
+    let mut names = vec!["ray, throughput, slot, hit"];
+    let mut reasons = vec!["always"];
+    if plan.columns.pdf {
+        names.push("previous pdf");
+        reasons.push("light is found in two ways");
+    }
+    if plan.columns.eta {
+        names.push("refraction's n²");
+        reasons.push("something refracts");
+    }
+    decision("columns", names.join(" + "), reasons.join("; "), 0)
+}
+
+fn ending(plan: &Plan, settings: &Settings) -> Decision {
+    let choice = format!("at most {} bounces", plan.max_bounces);
+    let reason = match (settings.max_bounces, settings.integrator) {
+        (Some(_), _) => "asked for; what longer paths carry is missing".into(),
+        (None, Integrator::Path) => format!("roulette ends paths without bias; {MOST_BOUNCES} is a counted cap"),
+        (None, Integrator::Whitted) => {
+            format!("branches end at diffuse surfaces or below 1/1024; {MOST_BOUNCES} is a counted cap")
+        }
+    };
+    decision("ending", choice, reason, 0)
+}
+
+fn film(settings: &Settings) -> Decision {
+    let pixels = settings.area().pixels() as u64;
+    let reason = "sum, spread of rounds and the current round, in f64";
+    decision(
+        "film",
+        format!("{pixels} pixels of {} bytes", size_of::<Pixel>()),
+        reason,
+        pixels * size_of::<Pixel>() as u64,
+    )
+}

@@ -1,0 +1,284 @@
+//! The renderer as others see it: a compiled scene, a plan and the means to add samples to a tile.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crate::film::{ROUND, Tile};
+pub use crate::lanes::Level;
+use crate::lanes::dispatch;
+pub use crate::plan::{Decision, PlanError};
+use crate::plan::{Plan, Stage};
+use crate::scene::{Scene, World, compile};
+use crate::settings::{Integrator, Settings};
+use crate::stream::{
+    MOST_SLOTS, Slots, Stream, dielectric, diffuse, direct, emission, environment, generate, intersect, mirror, sort,
+    surface,
+};
+
+/// Paths that go through the stages together: enough to keep lanes full, few enough to stay in the cache.
+const BATCH: usize = 2048;
+
+/// Rays that were traced.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RayCounts {
+    /// Rays from the camera.
+    pub camera: u64,
+    /// Rays that left a surface.
+    pub scattered: u64,
+    /// Shadow rays asked, pruned or not.
+    pub shadow: u64,
+}
+
+impl core::ops::AddAssign for RayCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.camera += other.camera;
+        self.scattered += other.scattered;
+        self.shadow += other.shadow;
+    }
+}
+
+/// A sample that was not finite: it counts as 0 and can be replayed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rejected {
+    /// Column and row in the whole image.
+    pub pixel: (u32, u32),
+    /// Sample number.
+    pub sample: u32,
+}
+
+/// What one call of [`Renderer::advance`] did.
+#[derive(Clone, Debug, Default)]
+pub struct Work {
+    /// Rays traced.
+    pub rays: RayCounts,
+    /// Samples that were not finite.
+    pub rejected: Vec<Rejected>,
+    /// Paths that the hard cap on bounces ended.
+    pub capped: u64,
+}
+
+/// A compiled scene with its plan; shared by all workers.
+pub struct Renderer {
+    scene: Scene,
+    plan: Plan,
+    settings: Settings,
+    level: Level,
+    token: Option<fearless_simd::Level>,
+}
+
+/// Buffers of one worker; made once and reused.
+pub struct Workspace {
+    pixels: generate::Pixels,
+    slots: Slots,
+    rays: Stream,
+    next: Stream,
+    diffuse: Stream,
+    mirror: Stream,
+    dielectric: Stream,
+    emitters: Stream,
+    escaped: Stream,
+}
+
+impl Renderer {
+    /// Compiles `world` and plans what `settings` need of it.
+    ///
+    /// # Errors
+    /// Settings that the scene cannot meet.
+    pub fn new(world: &World, settings: Settings, level: Level) -> Result<Self, PlanError> {
+        let scene = compile(world, settings.integrator == Integrator::Whitted);
+        let plan = Plan::new(&scene, &settings)?;
+        Ok(Self { scene, plan, settings, level, token: level.token() })
+    }
+
+    /// Settings of this render.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// The compiled scene.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// What the render does.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// The SIMD level that is used.
+    pub fn level(&self) -> Level {
+        self.level
+    }
+
+    /// What the plan decided.
+    pub fn decisions(&self) -> &[Decision] {
+        &self.plan.decisions
+    }
+
+    /// Buffers for one worker. Streams that the plan has no stage for are empty.
+    pub fn workspace(&self) -> Workspace {
+        let stream = |needed: bool| Stream::new(if needed { BATCH } else { 0 }, self.plan.columns);
+        let has = |test: fn(&Stage) -> bool| stream(self.plan.has(test));
+        Workspace {
+            pixels: generate::Pixels::default(),
+            slots: Slots::default(),
+            rays: stream(true),
+            next: stream(true),
+            diffuse: has(|stage| *stage == Stage::Surface),
+            mirror: has(|stage| matches!(stage, Stage::Mirror(_))),
+            dielectric: has(|stage| matches!(stage, Stage::Dielectric(..) | Stage::Split(_))),
+            emitters: has(|stage| *stage == Stage::Emission),
+            escaped: has(|stage| *stage == Stage::Environment),
+        }
+    }
+
+    /// Adds samples to `tile` until every pixel of it has `until` samples. `progress` counts the samples as they are
+    /// finished (relaxed), for a display.
+    pub fn advance(&self, tile: &mut Tile, until: u32, workspace: &mut Workspace, progress: &AtomicU64) -> Work {
+        let mut work = Work::default();
+        let pixels = tile.pixels.len();
+        let at_once = pixels.min(BATCH);
+        let samples_at_once = (BATCH / at_once) as u32;
+        while tile.samples < until {
+            let (from, to) = (tile.samples, until.min(tile.samples + samples_at_once));
+            for first in (0..pixels).step_by(at_once) {
+                let batch = first..pixels.min(first + at_once);
+                workspace.pixels.set(tile.area, batch.start, batch.end);
+                self.trace(workspace, from..to, &mut work);
+                deposit(workspace, tile, batch.clone(), from..to, &mut work);
+                progress.fetch_add((batch.len() * (to - from) as usize) as u64, Ordering::Relaxed);
+            }
+            tile.samples = to;
+        }
+        work
+    }
+
+    /// Traces samples of the workspace's pixels to the end; their radiance is in its slots.
+    fn trace(&self, workspace: &mut Workspace, samples: core::ops::Range<u32>, work: &mut Work) {
+        self.generate(workspace, samples);
+        work.rays.camera += workspace.rays.len() as u64;
+        let asks = self.plan.has(|stage| matches!(stage, Stage::Direct { .. }));
+        for bounce in 0..=self.plan.max_bounces {
+            let ends = bounce == self.plan.max_bounces;
+            if ends && self.settings.max_bounces.is_none() {
+                work.capped += workspace.rays.len() as u64;
+            }
+            for stage in &self.plan.stages {
+                self.perform(*stage, bounce, ends, workspace);
+            }
+            if asks {
+                work.rays.shadow += workspace.diffuse.len() as u64 * u64::from(self.settings.shadow_rays);
+            }
+            core::mem::swap(&mut workspace.rays, &mut workspace.next);
+            workspace.next.clear();
+            work.rays.scattered += workspace.rays.len() as u64;
+            if workspace.rays.is_empty() {
+                break;
+            }
+        }
+    }
+
+    fn generate(&self, workspace: &mut Workspace, samples: core::ops::Range<u32>) {
+        let Workspace { pixels, rays, slots, .. } = workspace;
+        let mut first = 0;
+        let mut round = None;
+        for sample in samples {
+            if round != Some(sample / ROUND) {
+                round = Some(sample / ROUND);
+                pixels.enter_round(self.settings.seed, sample / ROUND);
+            }
+            let view = &self.scene.views[self.settings.camera];
+            let what = (view, &self.settings, self.plan.columns);
+            dispatch!(self.token, l => generate::run(l, what, pixels, (sample, first), rays));
+            first = rays.len();
+        }
+        debug_assert!(first <= MOST_SLOTS);
+        slots.reset(first);
+    }
+
+    /// Runs one stage over its stream: the one place where stages are told apart.
+    fn perform(&self, stage: Stage, bounce: u32, ends: bool, workspace: &mut Workspace) {
+        let Workspace { slots, rays, next, diffuse, mirror, dielectric, emitters, escaped, .. } = workspace;
+        let (scene, settings, token) = (&self.scene, &self.settings, self.token);
+        match stage {
+            Stage::Intersect => dispatch!(token, l => intersect::list(l, &self.plan.everything, rays)),
+            Stage::Sort => self.sort(ends, workspace),
+            Stage::Emission => {
+                dispatch!(token, l => emission::run(l, scene, settings.shadow_rays, emitters, slots));
+            }
+            Stage::Environment => {
+                let radiance = scene.environment.unwrap_or_default();
+                dispatch!(token, l => environment::run(l, radiance, escaped, slots));
+            }
+            Stage::Surface => dispatch!(token, l => surface::run(l, scene, diffuse)),
+            Stage::Direct { weighed } => {
+                let occluders = &self.plan.occluders;
+                let context = direct::Context { lights: &scene.lights, occluders, settings, weighed };
+                dispatch!(token, l => direct::run(l, &context, bounce, diffuse, slots));
+            }
+            Stage::Diffuse => dispatch!(token, l => diffuse::run(l, settings.sampler, bounce, diffuse, next)),
+            Stage::Mirror(ending) => {
+                dispatch!(token, l => mirror::run(l, scene, ending, bounce, mirror, next));
+            }
+            Stage::Dielectric(fresnel, sampler) => {
+                dispatch!(token, l => dielectric::run(l, scene, (fresnel, sampler), bounce, dielectric, next));
+            }
+            Stage::Split(fresnel) => {
+                let least = crate::plan::LEAST_CONTRIBUTION;
+                dispatch!(token, l => dielectric::split(l, scene, fresnel, least, dielectric, next));
+            }
+        }
+    }
+
+    fn sort(&self, ends: bool, workspace: &mut Workspace) {
+        let Workspace { rays, diffuse, mirror, dielectric, emitters, escaped, .. } = workspace;
+        let waiting = rays.len();
+        let mut bins = sort::Bins {
+            emitters: ready(emitters, waiting, self.plan.has(|stage| *stage == Stage::Emission)),
+            escaped: ready(escaped, waiting, self.plan.has(|stage| *stage == Stage::Environment)),
+            materials: [
+                ready(diffuse, waiting, self.plan.has(|stage| *stage == Stage::Surface)),
+                ready(mirror, waiting, self.plan.has(|stage| matches!(stage, Stage::Mirror(_)))),
+                ready(
+                    dielectric,
+                    waiting,
+                    self.plan.has(|stage| matches!(stage, Stage::Dielectric(..) | Stage::Split(_))),
+                ),
+            ],
+        };
+        dispatch!(self.token, l => sort::run(l, &self.scene, ends, rays, &mut bins));
+    }
+}
+
+/// An emptied stream with room for `waiting` paths, where the plan needs it.
+fn ready(stream: &mut Stream, waiting: usize, needed: bool) -> Option<&mut Stream> {
+    stream.clear();
+    needed.then(|| {
+        stream.reserve(waiting);
+        stream
+    })
+}
+
+/// Adds the slots of a batch to its pixels, in sample order.
+fn deposit(
+    workspace: &Workspace,
+    tile: &mut Tile,
+    batch: core::ops::Range<usize>,
+    samples: core::ops::Range<u32>,
+    work: &mut Work,
+) {
+    let of_samples = workspace.slots.radiance().chunks_exact(batch.len());
+    for (sample, slots) in samples.zip(of_samples) {
+        for (pixel, radiance) in batch.clone().zip(slots) {
+            let finite = radiance.iter().all(|x| x.is_finite());
+            if !finite {
+                work.rejected.push(rejected(tile, pixel, sample));
+            }
+            tile.pixels[pixel].add(sample, if finite { *radiance } else { [0.0; 3] });
+        }
+    }
+}
+
+fn rejected(tile: &Tile, pixel: usize, sample: u32) -> Rejected {
+    let (x, y) = (pixel as u32 % tile.area.width, pixel as u32 / tile.area.width);
+    Rejected { pixel: (tile.area.x + x, tile.area.y + y), sample }
+}

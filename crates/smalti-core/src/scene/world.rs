@@ -1,0 +1,109 @@
+//! The world: what a scene file says, checked, in f64 and in the user's own units; names already indices.
+//!
+//! A world is what a scene reader (or a test) hands to the core. [`Scene`](super::Scene) is what the kernels trace:
+//! the same thing recentred, scaled to about 1 and rounded to f32.
+
+use glam::DVec3;
+
+/// A linear RGB triple in f64: an albedo, a radiance (W m⁻² sr⁻¹) or an intensity (W sr⁻¹).
+pub type Rgb = [f64; 3];
+
+/// Everything that a render needs to know about the scene. Lengths in metres, right-handed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct World {
+    /// What the surfaces are made of; other items name them by index.
+    pub materials: Vec<Material>,
+    /// Planar convex polygons.
+    pub polygons: Vec<Polygon>,
+    /// Spheres.
+    pub spheres: Vec<Sphere>,
+    /// Indexed triangle meshes.
+    pub meshes: Vec<Mesh>,
+    /// Lights without extent.
+    pub point_lights: Vec<PointLight>,
+    /// Radiance that arrives from infinity, the same from every direction.
+    pub environment: Option<Rgb>,
+    /// At least one camera.
+    pub cameras: Vec<Camera>,
+}
+
+/// How a surface scatters light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Material {
+    /// Ideal diffuse reflection on both sides; albedo in [0, 1].
+    Lambert {
+        /// Fraction of the light that is reflected, per channel.
+        albedo: Rgb,
+    },
+    /// Ideal mirror on both sides; reflectance in [0, 1].
+    Mirror {
+        /// Fraction of the light that is reflected, per channel.
+        reflectance: Rgb,
+    },
+    /// Smooth boundary of a clear medium; the outside (where the normal points) is vacuum.
+    Dielectric {
+        /// Index of refraction of the inside, > 0.
+        ior: f64,
+    },
+}
+
+/// A planar convex polygon with at least three vertices. Its normal follows the right-hand rule.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Polygon {
+    /// Corners in order.
+    pub vertices: Vec<DVec3>,
+    /// Index into [`World::materials`].
+    pub material: usize,
+    /// Radiance that leaves the front side (where the normal points), W m⁻² sr⁻¹.
+    pub radiance: Option<Rgb>,
+}
+
+/// A sphere; its normal points outward.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere {
+    /// Centre, metres.
+    pub centre: DVec3,
+    /// Radius, metres, > 0.
+    pub radius: f64,
+    /// Index into [`World::materials`].
+    pub material: usize,
+    /// Radiance that leaves the outside, W m⁻² sr⁻¹.
+    pub radiance: Option<Rgb>,
+}
+
+/// An indexed triangle mesh with flat normals.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// Corners, metres, already transformed.
+    pub vertices: Vec<DVec3>,
+    /// Three indices into `vertices` a triangle, right-hand winding.
+    pub faces: Vec<[u32; 3]>,
+    /// Index into [`World::materials`].
+    pub material: usize,
+    /// Radiance that leaves the front side of every triangle, W m⁻² sr⁻¹.
+    pub radiance: Option<Rgb>,
+}
+
+/// A light without extent, the same in all directions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointLight {
+    /// Where it is, metres.
+    pub position: DVec3,
+    /// Radiant intensity, W sr⁻¹.
+    pub intensity: Rgb,
+}
+
+/// A pinhole camera.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Camera {
+    /// The name in the scene file; empty for the only camera.
+    pub name: String,
+    /// The pinhole, metres.
+    pub eye: DVec3,
+    /// A point in the middle of the picture, metres.
+    pub look_at: DVec3,
+    /// A direction that is up in the picture.
+    pub up: DVec3,
+    /// Vertical field of view, radians, in (0, π).
+    pub fov: f64,
+}

@@ -1,0 +1,134 @@
+//! Settings of a render: what a user chooses, apart from the scene. Everything here changes the image;
+//! what must not (threads, tiles, SIMD level, display) is not here.
+
+/// Settings of a render, after the scene file and the command line have been merged.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Which light transport algorithm.
+    pub integrator: Integrator,
+    /// Image width in pixels, at least 1.
+    pub width: u32,
+    /// Image height in pixels, at least 1.
+    pub height: u32,
+    /// The part of the image that is rendered; `None` is all of it.
+    pub crop: Option<Rect>,
+    /// Samples (camera paths) a pixel, at least 1.
+    pub spp: u32,
+    /// Light samples at each diffuse vertex in all, over all lights; 0: the BSDF sample alone finds light.
+    pub shadow_rays: u32,
+    /// Scattering events after which a path ends; `None`: roulette alone ends it, with a counted cap.
+    pub max_bounces: Option<u32>,
+    /// Where the random numbers come from.
+    pub sampler: SamplerKind,
+    /// Names one realisation of the noise.
+    pub seed: u64,
+    /// Reflectance of dielectrics.
+    pub fresnel: Fresnel,
+    /// Whether a sample's place in its pixel is random (the report's 'ray noise'); else the pixel's centre.
+    pub jitter: bool,
+    /// Index into the world's cameras.
+    pub camera: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            integrator: Integrator::Path,
+            width: 400,
+            height: 400,
+            crop: None,
+            spp: 64,
+            shadow_rays: 1,
+            max_bounces: None,
+            sampler: SamplerKind::Sobol,
+            seed: 0,
+            fresnel: Fresnel::Exact,
+            jitter: true,
+            camera: 0,
+        }
+    }
+}
+
+impl Settings {
+    /// The part of the image that is rendered.
+    pub fn area(&self) -> Rect {
+        self.crop.unwrap_or(Rect { x: 0, y: 0, width: self.width, height: self.height })
+    }
+}
+
+/// Light transport algorithms.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Integrator {
+    /// Monte Carlo path tracing with next event estimation (report §1.2, 2.5–2.7, corrected).
+    Path,
+    /// Whitted (1980): perfect reflection and refraction as a tree, direct light at diffuse surfaces (report §1.1).
+    Whitted,
+}
+
+impl Integrator {
+    /// The name that users write.
+    pub fn name(self) -> &'static str {
+        match self {
+            Integrator::Path => "path",
+            Integrator::Whitted => "whitted",
+        }
+    }
+}
+
+/// Sources of random numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SamplerKind {
+    /// Owen-scrambled Sobol points, padded, by purpose.
+    Sobol,
+    /// Independent numbers from Xoshiro128++.
+    Independent,
+}
+
+impl SamplerKind {
+    /// The name that users write.
+    pub fn name(self) -> &'static str {
+        match self {
+            SamplerKind::Sobol => "sobol",
+            SamplerKind::Independent => "independent",
+        }
+    }
+}
+
+/// Reflectance of a smooth dielectric boundary.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fresnel {
+    /// Fresnel's equations, unpolarised.
+    Exact,
+    /// Schlick's approximation (report eq. 7 and 8, corrected).
+    Schlick,
+}
+
+impl Fresnel {
+    /// The name that users write.
+    pub fn name(self) -> &'static str {
+        match self {
+            Fresnel::Exact => "exact",
+            Fresnel::Schlick => "schlick",
+        }
+    }
+}
+
+/// A rectangle of pixels; (0, 0) is the top left pixel of the whole image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Rect {
+    /// Leftmost column.
+    pub x: u32,
+    /// Topmost row.
+    pub y: u32,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+impl Rect {
+    /// Number of pixels.
+    pub fn pixels(self) -> usize {
+        self.width as usize * self.height as usize
+    }
+}

@@ -1,0 +1,88 @@
+//! A smooth dielectric boundary: reflected or refracted by chance ([`run`]), or both as a tree ([`split`], whitted).
+
+use super::{DIRECTION, Scattered, Stream, THROUGHPUT, mirror, surface};
+use crate::bsdf::fresnel::{Boundary, boundary, reflectance};
+use crate::geometry::offset;
+use crate::lanes::{Lanes, V3};
+use crate::sampling::{Purpose, pair};
+use crate::scene::Scene;
+use crate::settings::{Fresnel, SamplerKind};
+
+/// Sends every path on along one of its two ways, chosen with the chance that each carries: the weight is 1.
+#[inline(always)]
+pub fn run<L: Lanes>(
+    l: L,
+    scene: &Scene,
+    (fresnel, sampler): (Fresnel, SamplerKind),
+    bounce: u32,
+    hits: &Stream,
+    next: &mut Stream,
+) {
+    next.reserve(hits.len());
+    for at in (0..hits.len()).step_by(L::WIDTH) {
+        let crossing = Crossing::at(l, scene, fresnel, hits, at);
+        let (u, _) = pair(l, sampler, hits.keys(l, at), bounce, Purpose::Lobe, (0, 0));
+        let reflects = l.lt(u, crossing.reflectance);
+        let rays = crossing.rays(l, reflects, hits, at, hits.v3(l, THROUGHPUT, at));
+        next.scatter(l, hits, at, hits.active(l, at), &rays);
+    }
+}
+
+/// Sends every path on along both ways: first all reflections, then all refractions, so that the order in which a
+/// tree's branches are added does not depend on the width of packets. Branches below `least` are dropped.
+#[inline(always)]
+pub fn split<L: Lanes>(l: L, scene: &Scene, fresnel: Fresnel, least: f32, hits: &Stream, next: &mut Stream) {
+    next.reserve(2 * hits.len());
+    for reflect in [true, false] {
+        for at in (0..hits.len()).step_by(L::WIDTH) {
+            let crossing = Crossing::at(l, scene, fresnel, hits, at);
+            let share = if reflect { crossing.reflectance } else { l.f(1.0) - crossing.reflectance };
+            let throughput = hits.v3(l, THROUGHPUT, at).scale(share);
+            let enough = hits.active(l, at) & l.le(l.f(least), throughput.max_component(l));
+            if l.any(enough) {
+                next.scatter(l, hits, at, enough, &crossing.rays(l, l.m(reflect), hits, at, throughput));
+            }
+        }
+    }
+}
+
+/// Hits on a boundary and what it does to them.
+struct Crossing<L: Lanes> {
+    hit: surface::Hit<L>,
+    /// Normal on the side the ray came from.
+    side: V3<L>,
+    boundary: Boundary<L>,
+    reflectance: L::F,
+}
+
+impl<L: Lanes> Crossing<L> {
+    #[inline(always)]
+    fn at(l: L, scene: &Scene, fresnel: Fresnel, hits: &Stream, at: usize) -> Self {
+        let hit = surface::hit(l, scene, hits, at);
+        let side = V3::select(l, hit.outside, hit.normal, -hit.normal);
+        let cosine = -side.dot(l, hits.v3(l, DIRECTION, at));
+        let boundary = boundary(l, [hit.colour.x, hit.colour.y, hit.colour.z], hit.outside, cosine);
+        let reflectance = reflectance(l, fresnel, &boundary);
+        Self { hit, side, boundary, reflectance }
+    }
+
+    /// The reflected rays where `reflects`, else the refracted ones.
+    #[inline(always)]
+    fn rays(&self, l: L, reflects: L::M, hits: &Stream, at: usize, throughput: V3<L>) -> Scattered<L> {
+        let incoming = hits.v3(l, DIRECTION, at);
+        let eta = self.boundary.eta;
+        let bend = l.fma(eta, self.boundary.cosine, -self.boundary.cosine_refracted);
+        let refracted = incoming.scale(eta).along(l, bend, self.side).normalised(l);
+        let direction = V3::select(l, reflects, mirror::reflect(l, incoming, self.side), refracted);
+        let leaves_on = V3::select(l, reflects, self.side, -self.side);
+        let so_far = hits.eta(l, at);
+        Scattered {
+            origin: offset::leave(l, self.hit.point, leaves_on),
+            direction,
+            throughput,
+            leaves: self.hit.surface,
+            pdf: l.f(0.0),
+            eta: l.select(reflects, so_far, so_far * eta * eta),
+        }
+    }
+}

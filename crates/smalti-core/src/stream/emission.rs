@@ -1,0 +1,36 @@
+//! Radiance of emitters that paths hit.
+//!
+//! After a diffuse bounce the same light could have been found by a shadow ray, so the hit is weighed by the balance
+//! heuristic (Veach and Guibas 1995): pdf / (pdf + N · pdf of the light samples). After the camera or a specular bounce
+//! only a hit finds it, and it counts whole. Emission is counted once in every case.
+
+use super::{DIRECTION, DISTANCE, ORIGIN, PRIM, SLOT, Slots, Stream, THROUGHPUT};
+use crate::lanes::{Lanes, V3};
+use crate::light::sample::pdf_of_hit;
+use crate::scene::{Class, Scene};
+
+/// Adds what the emitters of this stream send back along their rays.
+#[inline(always)]
+pub fn run<L: Lanes>(l: L, scene: &Scene, shadow_rays: u32, hits: &Stream, slots: &mut Slots) {
+    for at in (0..hits.len()).step_by(L::WIDTH) {
+        let prim = hits.u(l, PRIM, at);
+        let code = l.gather_u(&scene.classes, prim);
+        let active = hits.active(l, at);
+        let number = l.select_u(active, l.add_u(l.shr::<{ Class::BITS }>(code), l.u(u32::MAX)), l.u(0));
+        let emitter = l.gather_record(&scene.lights.emitters, number);
+        let [x, y, z, w, _, _, _, surface] = l.gather_record(&scene.shades, prim);
+        let is_sphere = !l.lt_u(l.bits(surface), l.u(scene.planes));
+        let (origin, wi, t) = (hits.v3(l, ORIGIN, at), hits.v3(l, DIRECTION, at), hits.f(l, DISTANCE, at));
+        let geometry = V3::new(x, y, z);
+        let normal = V3::select(l, is_sphere, origin.along(l, t, wi) - geometry, geometry);
+        let front = l.lt(normal.dot(l, wi), l.f(0.0));
+
+        let by_scatter = hits.pdf(l, at);
+        let by_light = pdf_of_hit(l, &emitter, &[x, y, z, w], is_sphere, (origin, wi, t));
+        let balanced = by_scatter / l.fma(l.f(shadow_rays as f32), by_light, by_scatter);
+        let weight = l.select(l.lt(l.f(0.0), by_scatter), balanced, l.f(1.0));
+
+        let radiance = V3::new(emitter[0], emitter[1], emitter[2]).scale(weight * hits.eta(l, at));
+        slots.add(l, active & front, hits.u(l, SLOT, at), hits.v3(l, THROUGHPUT, at) * radiance);
+    }
+}

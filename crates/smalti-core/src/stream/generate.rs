@@ -1,0 +1,84 @@
+//! Camera rays: the samples of a batch of pixels.
+
+use super::{Columns, DIRECTION, ETA, KEY, LEAVES, ORIGIN, PDF, SLOT, Stream, THROUGHPUT};
+use crate::film::ROUND;
+use crate::lanes::{Lanes, V3};
+use crate::light::table::NO_SURFACE;
+use crate::sampling::{Keys, Purpose, pair, sampler::pixel_key};
+use crate::scene::View;
+use crate::settings::{Rect, Settings};
+
+/// The pixels of a batch, as columns.
+#[derive(Clone, Debug, Default)]
+pub struct Pixels {
+    x: Vec<u32>,
+    y: Vec<u32>,
+    key: Vec<u32>,
+    count: usize,
+}
+
+impl Pixels {
+    /// Pixels `from..to` of `area`, counted row by row.
+    pub fn set(&mut self, area: Rect, from: usize, to: usize) {
+        self.count = to - from;
+        self.x.clear();
+        self.y.clear();
+        for index in from as u32..to as u32 {
+            self.x.push(area.x + index % area.width);
+            self.y.push(area.y + index / area.width);
+        }
+        // A packet may read past the last pixel.
+        self.x.resize(self.count + 16, 0);
+        self.y.resize(self.count + 16, 0);
+    }
+
+    /// Keys for one round.
+    pub fn enter_round(&mut self, seed: u64, round: u32) {
+        self.key.clear();
+        self.key.extend(self.x.iter().zip(&self.y).map(|(x, y)| pixel_key(seed, *x, *y, round)));
+    }
+}
+
+/// Writes the camera rays of sample `sample` of all pixels to slots `first..` of `rays`.
+#[inline(always)]
+pub fn run<L: Lanes>(
+    l: L,
+    (view, settings, used): (&View, &Settings, Columns),
+    pixels: &Pixels,
+    (sample, first): (u32, usize),
+    rays: &mut Stream,
+) {
+    let reversed = l.u((sample % ROUND).reverse_bits());
+    let (right, up, forward) = (V3::splat(l, view.right), V3::splat(l, view.up), V3::splat(l, view.forward));
+    // Square pixels: the picture is 2 high and 2 · width / height wide.
+    let size = l.f(2.0 / settings.height as f32);
+    let (middle_x, middle_y) = (l.f(settings.width as f32 / 2.0), l.f(settings.height as f32 / 2.0));
+    for at in (0..pixels.count).step_by(L::WIDTH) {
+        let key = l.load_u(&pixels.key[at..]);
+        let (u, v) = place(l, settings, Keys { key, index: reversed });
+        let x = (l.to_f(l.load_u(&pixels.x[at..])) + u - middle_x) * size;
+        let y = (middle_y - l.to_f(l.load_u(&pixels.y[at..])) - v) * size;
+        let direction = forward.along(l, x, right).along(l, y, up).normalised(l);
+        let slot = l.add_u(l.u((first + at) as u32), l.iota()) & l.u(0xffff);
+        let to = first + at;
+        rays.set_v3(l, ORIGIN, to, V3::splat(l, view.eye));
+        rays.set_v3(l, DIRECTION, to, direction);
+        rays.set_v3(l, THROUGHPUT, to, V3::splat(l, [1.0; 3]));
+        rays.set_u(l, LEAVES, to, l.u(NO_SURFACE));
+        rays.set_u(l, KEY, to, key);
+        rays.set_u(l, SLOT, to, reversed | slot);
+        if used.pdf {
+            rays.set_f(l, PDF, to, l.f(0.0));
+        }
+        if used.eta {
+            rays.set_f(l, ETA, to, l.f(1.0));
+        }
+    }
+    rays.set_len(first + pixels.count);
+}
+
+/// The place in the pixel.
+#[inline(always)]
+fn place<L: Lanes>(l: L, settings: &Settings, keys: Keys<L>) -> (L::F, L::F) {
+    if settings.jitter { pair(l, settings.sampler, keys, 0, Purpose::Film, (0, 0)) } else { (l.f(0.5), l.f(0.5)) }
+}

@@ -1,0 +1,43 @@
+//! Where radiance goes: one slot a (pixel, sample) of the batch.
+
+use crate::lanes::{Lanes, Rgb};
+
+/// Radiance of the samples of a batch.
+#[derive(Clone, Debug, Default)]
+pub struct Slots {
+    radiance: Vec<[f32; 3]>,
+}
+
+impl Slots {
+    /// `count` black slots.
+    pub fn reset(&mut self, count: usize) {
+        self.radiance.clear();
+        self.radiance.resize(count, [0.0; 3]);
+    }
+
+    /// The samples.
+    pub fn radiance(&self) -> &[[f32; 3]] {
+        &self.radiance
+    }
+
+    /// Adds to the slots of the lanes `mask`, lane by lane (two lanes may share a slot). `slot` is the column
+    /// [`SLOT`](super::SLOT).
+    #[inline(always)]
+    pub fn add<L: Lanes>(&mut self, l: L, mask: L::M, slot: L::U, radiance: Rgb<L>) {
+        let mut slots = [0; 16];
+        let mut columns = [[0.0; 16]; 3];
+        l.store_u(slot & l.u(0xffff), &mut slots);
+        l.store(radiance.x, &mut columns[0]);
+        l.store(radiance.y, &mut columns[1]);
+        l.store(radiance.z, &mut columns[2]);
+        let mut left = l.bitmask(mask);
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize % 16;
+            let sum = &mut self.radiance[slots[lane] as usize];
+            for (sum, column) in sum.iter_mut().zip(&columns) {
+                *sum += column[lane];
+            }
+            left &= left - 1;
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! Where a path hit a diffuse surface: the point, moved off the surface; the normal on the side the path came from; and
+//! the throughput with the albedo taken in.
+
+use super::{DIRECTION, DISTANCE, LEAVES, ORIGIN, PRIM, Stream, THROUGHPUT};
+use crate::geometry::offset;
+use crate::lanes::{Lanes, V3};
+use crate::scene::Scene;
+
+/// A hit as shading sees it.
+pub struct Hit<L: Lanes> {
+    /// On the surface.
+    pub point: V3<L>,
+    /// Unit normal as the surface has it (outward on spheres).
+    pub normal: V3<L>,
+    /// Lanes in which the ray came from the side of the normal.
+    pub outside: L::M,
+    /// Colour of the material.
+    pub colour: V3<L>,
+    /// Surface id.
+    pub surface: L::U,
+}
+
+/// The hits of a packet.
+#[inline(always)]
+pub fn hit<L: Lanes>(l: L, scene: &Scene, hits: &Stream, at: usize) -> Hit<L> {
+    let [x, y, z, w, r, g, b, surface] = l.gather_record(&scene.shades, hits.u(l, PRIM, at));
+    let surface = l.bits(surface);
+    let (origin, direction) = (hits.v3(l, ORIGIN, at), hits.v3(l, DIRECTION, at));
+    let point = origin.along(l, hits.f(l, DISTANCE, at), direction);
+    let geometry = V3::new(x, y, z);
+    let is_sphere = !l.lt_u(surface, l.u(scene.planes));
+    let (mut on_surface, mut normal) = (offset::onto_plane(l, point, geometry, w), geometry);
+    if l.any(is_sphere) {
+        let (on_sphere, outward) = offset::onto_sphere(l, point, geometry, w);
+        on_surface = V3::select(l, is_sphere, on_sphere, on_surface);
+        normal = V3::select(l, is_sphere, outward, normal);
+    }
+    let outside = l.lt(normal.dot(l, direction), l.f(0.0));
+    Hit { point: on_surface, normal, outside, colour: V3::new(r, g, b), surface }
+}
+
+/// Turns the hits of a diffuse stream into vertices, in place.
+#[inline(always)]
+pub fn run<L: Lanes>(l: L, scene: &Scene, hits: &mut Stream) {
+    for at in (0..hits.len()).step_by(L::WIDTH) {
+        let hit = hit(l, scene, hits, at);
+        let normal = V3::select(l, hit.outside, hit.normal, -hit.normal);
+        hits.set_v3(l, ORIGIN, at, offset::leave(l, hit.point, normal));
+        hits.set_v3(l, DIRECTION, at, normal);
+        hits.set_v3(l, THROUGHPUT, at, hits.v3(l, THROUGHPUT, at) * hit.colour);
+        hits.set_u(l, LEAVES, at, hit.surface);
+    }
+}
