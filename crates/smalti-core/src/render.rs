@@ -15,7 +15,7 @@ use crate::stream::{
 };
 
 /// Paths that go through the stages together: enough to keep lanes full, few enough to stay in the cache.
-const BATCH: usize = 2048;
+const BATCH: usize = 4096;
 
 /// Rays that were traced.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -200,7 +200,7 @@ impl Renderer {
         let Workspace { slots, rays, next, diffuse, mirror, dielectric, emitters, escaped, .. } = workspace;
         let (scene, settings, token) = (&self.scene, &self.settings, self.token);
         match stage {
-            Stage::Intersect => dispatch!(token, l => intersect::list(l, &self.plan.everything, rays)),
+            Stage::Intersect => dispatch!(token, l => intersect::run(l, &self.plan.everything, rays)),
             Stage::Sort => self.sort(ends, workspace),
             Stage::Emission => {
                 dispatch!(token, l => emission::run(l, scene, settings.shadow_rays, emitters, slots));

@@ -26,7 +26,7 @@ pub fn boundary<L: Lanes>(l: L, [n, inverse, excess]: [L::F; 3], outside: L::M, 
     // g² = (m − 1)(m + 1) + c² with m = n_t / n_i; inside, m = 1/n and (m − 1)(m + 1) = −(n − 1)(n + 1) / n².
     let eta = l.select(outside, inverse, n);
     let step = l.select(outside, excess, -(excess * inverse * inverse));
-    let g_squared = l.fma(c, c, step);
+    let g_squared = l.mul_add(c, c, step);
     let g = l.sqrt(l.max(g_squared, l.f(0.0)));
     Boundary { cosine: c, cosine_refracted: g * eta, eta, g_squared, denser: l.lt(eta, one) }
 }
@@ -49,8 +49,8 @@ fn exact<L: Lanes>(l: L, c: L::F, g: L::F) -> L::F {
     let one = l.f(1.0);
     let (sum, difference) = (g + c, g - c);
     let a = difference / sum;
-    let b = l.fma(c, sum, -one) / l.fma(c, difference, one);
-    l.f(0.5) * a * a * l.fma(b, b, one)
+    let b = l.mul_add(c, sum, -one) / l.mul_add(c, difference, one);
+    l.f(0.5) * a * a * l.mul_add(b, b, one)
 }
 
 /// R₀ + (1 − R₀)(1 − cos)⁵, R₀ = ((n₁ − n₂)/(n₁ + n₂))², cos on the less dense side.
@@ -61,5 +61,5 @@ fn schlick<L: Lanes>(l: L, eta: L::F, cosine: L::F) -> L::F {
     let r0 = root * root;
     let m = one - cosine;
     let squared = m * m;
-    l.fma(one - r0, squared * squared * m, r0)
+    l.mul_add(one - r0, squared * squared * m, r0)
 }

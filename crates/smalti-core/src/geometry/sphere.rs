@@ -17,7 +17,7 @@ pub fn hit<L: Lanes>(l: L, ray: &Ray<L>, centre: V3<L>, radius: L::F, leaves_it:
     let b = -f.dot(l, d);
     let zero = l.f(0.0);
     let closest = f.along(l, b / a, d);
-    let discriminant = l.fma(radius, radius, -closest.dot(l, closest));
+    let discriminant = l.mul_add(radius, radius, -closest.dot(l, closest));
     let meets = l.lt(zero, discriminant);
     if !l.any(meets | leaves_it) {
         return never;

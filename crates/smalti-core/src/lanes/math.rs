@@ -11,9 +11,10 @@ use super::Lanes;
 #[inline(always)]
 pub fn sin_cos_quarter<L: Lanes>(l: L, x: L::F) -> (L::F, L::F) {
     let z = x * x;
-    let sine = l.fma(l.fma(z, l.fma(z, l.f(-1.951_529_6e-4), l.f(8.332_161e-3)), l.f(-1.666_665_5e-1)) * z, x, x);
-    let c = l.fma(z, l.fma(z, l.f(2.443_315_7e-5), l.f(-1.388_731_6e-3)), l.f(4.166_664_6e-2));
-    let cosine = l.fma(c * z, z, l.fma(z, l.f(-0.5), l.f(1.0)));
+    let sine =
+        l.mul_add(l.mul_add(z, l.mul_add(z, l.f(-1.951_529_6e-4), l.f(8.332_161e-3)), l.f(-1.666_665_5e-1)) * z, x, x);
+    let c = l.mul_add(z, l.mul_add(z, l.f(2.443_315_7e-5), l.f(-1.388_731_6e-3)), l.f(4.166_664_6e-2));
+    let cosine = l.mul_add(c * z, z, l.mul_add(z, l.f(-0.5), l.f(1.0)));
     (sine, cosine)
 }
 

@@ -76,10 +76,6 @@ impl Lanes for One {
         x as f32
     }
     #[inline(always)]
-    fn fma(self, a: f32, b: f32, c: f32) -> f32 {
-        a.mul_add(b, c)
-    }
-    #[inline(always)]
     fn sqrt(self, x: f32) -> f32 {
         x.sqrt()
     }

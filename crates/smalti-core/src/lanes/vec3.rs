@@ -38,26 +38,30 @@ impl<L: Lanes> V3<L> {
         Self::new(l.f(v[0]), l.f(v[1]), l.f(v[2]))
     }
 
-    /// Scalar product, in two fused steps: fma(x, x', fma(y, y', z·z')).
+    /// Scalar product x·x' + (y·y' + z·z').
     #[inline(always)]
     pub fn dot(self, l: L, other: Self) -> L::F {
-        l.fma(self.x, other.x, l.fma(self.y, other.y, self.z * other.z))
+        l.mul_add(self.x, other.x, l.mul_add(self.y, other.y, self.z * other.z))
     }
 
-    /// Vector product; each component is a difference of two products, one of them fused.
+    /// Vector product.
     #[inline(always)]
     pub fn cross(self, l: L, other: Self) -> Self {
         Self::new(
-            l.fma(self.y, other.z, -(self.z * other.y)),
-            l.fma(self.z, other.x, -(self.x * other.z)),
-            l.fma(self.x, other.y, -(self.y * other.x)),
+            l.mul_add(self.y, other.z, -(self.z * other.y)),
+            l.mul_add(self.z, other.x, -(self.x * other.z)),
+            l.mul_add(self.x, other.y, -(self.y * other.x)),
         )
     }
 
     /// self + s·direction.
     #[inline(always)]
     pub fn along(self, l: L, s: L::F, direction: Self) -> Self {
-        Self::new(l.fma(s, direction.x, self.x), l.fma(s, direction.y, self.y), l.fma(s, direction.z, self.z))
+        Self::new(
+            l.mul_add(s, direction.x, self.x),
+            l.mul_add(s, direction.y, self.y),
+            l.mul_add(s, direction.z, self.z),
+        )
     }
 
     /// Scaled by one factor a lane.

@@ -105,10 +105,6 @@ macro_rules! lanes {
                 <$f as SimdCvtFloat<$i>>::float_from(signed)
             }
             #[inline(always)]
-            fn fma(self, a: Self::F, b: Self::F, c: Self::F) -> Self::F {
-                a.mul_add_precise(b, c)
-            }
-            #[inline(always)]
             fn sqrt(self, x: Self::F) -> Self::F {
                 SimdFloat::sqrt(x)
             }

@@ -123,7 +123,7 @@ fn sphere<L: Lanes>(l: L, place: &[L::F; 16], surface: L::U, x: V3<L>, (u, v): (
     let distance = l.sqrt(d2);
     let wi = warp::about(l, axis.scale(l.f(1.0) / distance), local).normalised(l);
     let sine_squared = below * (l.f(2.0) - below);
-    let to_surface = distance * (l.f(1.0) - below) - l.sqrt(l.max(l.fma(-d2, sine_squared, r2), l.f(0.0)));
+    let to_surface = distance * (l.f(1.0) - below) - l.sqrt(l.max(l.mul_add(-d2, sine_squared, r2), l.f(0.0)));
     let zero = V3::splat(l, [0.0; 3]);
     Incident {
         reach: wi.scale(to_surface),

@@ -5,7 +5,7 @@
 
 mod reasons;
 
-use crate::accel::{List, occluders};
+use crate::accel::{Accel, occluders};
 use crate::light::table::Kind;
 use crate::scene::{Class, Scene};
 use crate::settings::{Fresnel, Integrator, SamplerKind, Settings};
@@ -76,9 +76,9 @@ pub struct Plan {
     /// Scattering events after which paths end.
     pub max_bounces: u32,
     /// Everything, as rays meet it.
-    pub everything: List,
+    pub everything: Accel,
     /// What can stop a shadow ray.
-    pub occluders: List,
+    pub occluders: Accel,
     /// The decisions with their reasons.
     pub decisions: Vec<Decision>,
 }
@@ -90,9 +90,9 @@ impl Plan {
     /// Settings under which part of the light could not be found.
     pub fn new(scene: &Scene, settings: &Settings) -> Result<Self, PlanError> {
         check(scene, settings)?;
-        let prims = scene.shades.len() as u32;
-        let everything = List::new(scene, 0..prims).expect("fits");
-        let occluders = List::new(scene, occluders::of(scene)).expect("fits");
+        let prims: Vec<u32> = (0..scene.shades.len() as u32).collect();
+        let everything = Accel::new(scene, &prims);
+        let occluders = Accel::new(scene, &occluders::of(scene));
         let (stages, columns) = (stages(scene, settings), columns(scene, settings));
         let max_bounces = settings.max_bounces.unwrap_or(MOST_BOUNCES).min(MOST_BOUNCES);
         let mut plan = Self { stages, columns, max_bounces, everything, occluders, decisions: Vec::new() };

@@ -23,9 +23,19 @@ fn decision(subject: &'static str, choice: impl Into<String>, reason: impl Into<
 }
 
 fn accelerator(plan: &Plan, scene: &Scene) -> Decision {
-    let bytes = (scene.shades.len() * 44 + scene.faces.len() * 28 + scene.vertices.len() * 12) as u64;
-    let choice = format!("list of {} primitives", plan.everything.len());
-    decision("accelerator", choice, "few enough that testing all of them for many rays at a time is fastest", bytes)
+    let tables = (scene.shades.len() * 44 + scene.faces.len() * 28 + scene.vertices.len() * 12) as u64;
+    let list = plan.everything.list.len();
+    match &plan.everything.tree {
+        None => {
+            let reason = "few enough that testing all of them for many rays at a time is fastest";
+            decision("accelerator", format!("list of {list} primitives"), reason, tables)
+        }
+        Some(tree) => {
+            let choice = format!("tree of {} primitives, list of {list}", tree.len());
+            let reason = "many: a tree for the meshes; what was declared one by one is large and stays in the list";
+            decision("accelerator", choice, reason, tables + tree.bytes())
+        }
+    }
 }
 
 fn occluders(plan: &Plan, scene: &Scene) -> Option<Decision> {

@@ -9,7 +9,7 @@ use crate::lanes::{Lanes, V3};
 #[inline(always)]
 pub fn disc<L: Lanes>(l: L, u: L::F, v: L::F) -> (L::F, L::F) {
     let two = l.f(2.0);
-    let (a, b) = (l.fma(two, u, l.f(-1.0)), l.fma(two, v, l.f(-1.0)));
+    let (a, b) = (l.mul_add(two, u, l.f(-1.0)), l.mul_add(two, v, l.f(-1.0)));
     let a_wins = l.lt(l.abs(b), l.abs(a));
     let radius = l.select(a_wins, a, b);
     let other = l.select(a_wins, b, a);
@@ -25,7 +25,7 @@ pub fn disc<L: Lanes>(l: L, u: L::F, v: L::F) -> (L::F, L::F) {
 pub fn cosine_hemisphere<L: Lanes>(l: L, u: L::F, v: L::F) -> V3<L> {
     let (x, y) = disc(l, u, v);
     // 1 - x² - y² is at least about 1e-7 for numbers below 1; the floor keeps the pdf away from 0.
-    let z = l.sqrt(l.max(l.fma(-x, x, l.fma(-y, y, l.f(1.0))), l.f(6e-8)));
+    let z = l.sqrt(l.max(l.mul_add(-x, x, l.mul_add(-y, y, l.f(1.0))), l.f(6e-8)));
     V3::new(x, y, z)
 }
 
@@ -73,11 +73,11 @@ pub fn about<L: Lanes>(l: L, n: V3<L>, v: V3<L>) -> V3<L> {
     let sign = l.copysign(l.f(1.0), n.z);
     let a = l.f(-1.0) / (sign + n.z);
     let b = n.x * n.y * a;
-    let tangent: V3<L> = V3::new(l.fma(sign * n.x * n.x, a, l.f(1.0)), sign * b, -sign * n.x);
-    let bitangent: V3<L> = V3::new(b, l.fma(n.y * n.y, a, sign), -n.y);
+    let tangent: V3<L> = V3::new(l.mul_add(sign * n.x * n.x, a, l.f(1.0)), sign * b, -sign * n.x);
+    let bitangent: V3<L> = V3::new(b, l.mul_add(n.y * n.y, a, sign), -n.y);
     V3::new(
-        l.fma(v.x, tangent.x, l.fma(v.y, bitangent.x, v.z * n.x)),
-        l.fma(v.x, tangent.y, l.fma(v.y, bitangent.y, v.z * n.y)),
-        l.fma(v.x, tangent.z, l.fma(v.y, bitangent.z, v.z * n.z)),
+        l.mul_add(v.x, tangent.x, l.mul_add(v.y, bitangent.x, v.z * n.x)),
+        l.mul_add(v.x, tangent.y, l.mul_add(v.y, bitangent.y, v.z * n.y)),
+        l.mul_add(v.x, tangent.z, l.mul_add(v.y, bitangent.z, v.z * n.z)),
     )
 }

@@ -71,7 +71,7 @@ impl<L: Lanes> Crossing<L> {
     fn rays(&self, l: L, reflects: L::M, hits: &Stream, at: usize, throughput: V3<L>) -> Scattered<L> {
         let incoming = hits.v3(l, DIRECTION, at);
         let eta = self.boundary.eta;
-        let bend = l.fma(eta, self.boundary.cosine, -self.boundary.cosine_refracted);
+        let bend = l.mul_add(eta, self.boundary.cosine, -self.boundary.cosine_refracted);
         let refracted = incoming.scale(eta).along(l, bend, self.side).normalised(l);
         let direction = V3::select(l, reflects, mirror::reflect(l, incoming, self.side), refracted);
         let leaves_on = V3::select(l, reflects, self.side, -self.side);

@@ -8,7 +8,7 @@
 use core::f32::consts::FRAC_1_PI;
 
 use super::{DIRECTION, LEAVES, ORIGIN, SLOT, Slots, Stream, THROUGHPUT};
-use crate::accel::{List, list::Tracer};
+use crate::accel::{Accel, Tracer};
 use crate::geometry::Ray;
 use crate::lanes::{Lanes, V3};
 use crate::light::{Incident, sample::sample, table::LightTable};
@@ -20,7 +20,7 @@ pub struct Context<'a> {
     /// The lights, at least one.
     pub lights: &'a LightTable,
     /// What can stand in the way.
-    pub occluders: &'a List,
+    pub occluders: &'a Accel,
     /// Number of shadow rays, sampler.
     pub settings: &'a Settings,
     /// Whether a scattered ray may find the same light (path), or not (whitted).
@@ -58,7 +58,7 @@ fn one<L: Lanes>(
     let count = l.f(context.settings.shadow_rays as f32);
     let by_chance =
         if context.weighed { l.keep(incident.by_chance, warp::cosine_hemisphere_pdf(l, cosine)) } else { l.f(0.0) };
-    let irradiance = incident.radiance.scale(cosine / l.fma(count, incident.pdf, by_chance));
+    let irradiance = incident.radiance.scale(cosine / l.mul_add(count, incident.pdf, by_chance));
     // A light point behind the surface, or one that shows its back, has nothing to ask; nor has 0/0 or ∞/∞.
     let brightest = irradiance.max_component(l);
     let asks = vertices.active(l, at)
@@ -69,7 +69,7 @@ fn one<L: Lanes>(
         return V3::splat(l, [0.0; 3]);
     }
     let ray = Ray::new(l, point, incident.reach, vertices.u(l, LEAVES, at));
-    let lit = asks & !tracer.occluded(l, &ray, l.f(1.0), incident.surface, asks);
+    let lit = asks & !tracer.occluded(l, &ray, incident.surface, asks);
     V3::new(l.keep(lit, irradiance.x), l.keep(lit, irradiance.y), l.keep(lit, irradiance.z))
 }
 

@@ -27,7 +27,7 @@ pub fn run<L: Lanes>(l: L, scene: &Scene, shadow_rays: u32, hits: &Stream, slots
 
         let by_scatter = hits.pdf(l, at);
         let by_light = pdf_of_hit(l, &emitter, &[x, y, z, w], is_sphere, (origin, wi, t));
-        let balanced = by_scatter / l.fma(l.f(shadow_rays as f32), by_light, by_scatter);
+        let balanced = by_scatter / l.mul_add(l.f(shadow_rays as f32), by_light, by_scatter);
         let weight = l.select(l.lt(l.f(0.0), by_scatter), balanced, l.f(1.0));
 
         let radiance = V3::new(emitter[0], emitter[1], emitter[2]).scale(weight * hits.eta(l, at));

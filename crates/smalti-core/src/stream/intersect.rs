@@ -1,7 +1,7 @@
 //! What each ray of the stream hits.
 
 use super::{DIRECTION, DISTANCE, LEAVES, ORIGIN, PRIM, Stream};
-use crate::accel::{List, list::Tracer};
+use crate::accel::{Accel, Tracer};
 use crate::geometry::Ray;
 use crate::lanes::Lanes;
 
@@ -11,12 +11,12 @@ pub fn ray<L: Lanes>(l: L, rays: &Stream, at: usize) -> Ray<L> {
     Ray::new(l, rays.v3(l, ORIGIN, at), rays.v3(l, DIRECTION, at), rays.u(l, LEAVES, at))
 }
 
-/// Nearest hits in the list.
+/// Writes distance and primitive of every ray's nearest hit.
 #[inline(always)]
-pub fn list<L: Lanes>(l: L, list: &List, rays: &mut Stream) {
-    let mut tracer = Tracer::new(l, list);
+pub fn run<L: Lanes>(l: L, accel: &Accel, rays: &mut Stream) {
+    let mut tracer = Tracer::new(l, accel);
     for at in (0..rays.len()).step_by(L::WIDTH) {
-        let (t, prim) = tracer.nearest(l, &ray(l, rays, at));
+        let (t, prim) = tracer.nearest(l, &ray(l, rays, at), rays.active(l, at));
         rays.set_f(l, DISTANCE, at, t);
         rays.set_u(l, PRIM, at, prim);
     }
