@@ -8,6 +8,7 @@ pub mod lanes;
 pub mod light;
 pub mod plan;
 pub mod render;
+mod replay;
 pub mod sampling;
 pub mod scene;
 pub mod settings;

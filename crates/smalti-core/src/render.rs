@@ -1,5 +1,6 @@
 //! The renderer as others see it: a compiled scene, a plan and the means to add samples to a tile.
 
+use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::film::{ROUND, Tile};
@@ -7,6 +8,7 @@ pub use crate::lanes::Level;
 use crate::lanes::dispatch;
 pub use crate::plan::{Decision, PlanError};
 use crate::plan::{Plan, Stage};
+pub use crate::replay::Vertex;
 use crate::scene::{Scene, World, compile};
 use crate::settings::{Integrator, Settings};
 use crate::stream::{
@@ -67,9 +69,9 @@ pub struct Renderer {
 
 /// Buffers of one worker; made once and reused.
 pub struct Workspace {
-    pixels: generate::Pixels,
-    slots: Slots,
-    rays: Stream,
+    pub(crate) pixels: generate::Pixels,
+    pub(crate) slots: Slots,
+    pub(crate) rays: Stream,
     next: Stream,
     diffuse: Stream,
     mirror: Stream,
@@ -153,31 +155,46 @@ impl Renderer {
     }
 
     /// Traces samples of the workspace's pixels to the end; their radiance is in its slots.
-    fn trace(&self, workspace: &mut Workspace, samples: core::ops::Range<u32>, work: &mut Work) {
+    fn trace(&self, workspace: &mut Workspace, samples: Range<u32>, work: &mut Work) {
         self.generate(workspace, samples);
         work.rays.camera += workspace.rays.len() as u64;
         let asks = self.plan.has(|stage| matches!(stage, Stage::Direct { .. }));
         for bounce in 0..=self.plan.max_bounces {
-            let ends = bounce == self.plan.max_bounces;
-            if ends && self.settings.max_bounces.is_none() {
+            if bounce == self.plan.max_bounces && self.settings.max_bounces.is_none() {
                 work.capped += workspace.rays.len() as u64;
             }
-            for stage in &self.plan.stages {
-                self.perform(*stage, bounce, ends, workspace);
-            }
+            let next = self.bounce(bounce, workspace, |_, _| {});
             if asks {
                 work.rays.shadow += workspace.diffuse.len() as u64 * u64::from(self.settings.shadow_rays);
             }
-            core::mem::swap(&mut workspace.rays, &mut workspace.next);
-            workspace.next.clear();
             work.rays.scattered += workspace.rays.len() as u64;
-            if workspace.rays.is_empty() {
+            if next == ControlFlow::Break(()) {
                 break;
             }
         }
     }
 
-    fn generate(&self, workspace: &mut Workspace, samples: core::ops::Range<u32>) {
+    /// Takes the stream through all stages once; what scattered is the new stream. `look` sees the rays with their hits.
+    pub(crate) fn bounce(
+        &self,
+        bounce: u32,
+        workspace: &mut Workspace,
+        mut look: impl FnMut(&Self, &Workspace),
+    ) -> ControlFlow<()> {
+        let ends = bounce == self.plan.max_bounces;
+        for stage in &self.plan.stages {
+            self.perform(*stage, bounce, ends, workspace);
+            if *stage == Stage::Intersect {
+                look(self, workspace);
+            }
+        }
+        core::mem::swap(&mut workspace.rays, &mut workspace.next);
+        workspace.next.clear();
+        if workspace.rays.is_empty() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+
+    /// Camera rays of some samples of the workspace's pixels, and a slot for each.
+    pub(crate) fn generate(&self, workspace: &mut Workspace, samples: Range<u32>) {
         let Workspace { pixels, rays, slots, .. } = workspace;
         let mut first = 0;
         let mut round = None;
@@ -259,13 +276,7 @@ fn ready(stream: &mut Stream, waiting: usize, needed: bool) -> Option<&mut Strea
 }
 
 /// Adds the slots of a batch to its pixels, in sample order.
-fn deposit(
-    workspace: &Workspace,
-    tile: &mut Tile,
-    batch: core::ops::Range<usize>,
-    samples: core::ops::Range<u32>,
-    work: &mut Work,
-) {
+fn deposit(workspace: &Workspace, tile: &mut Tile, batch: Range<usize>, samples: Range<u32>, work: &mut Work) {
     let of_samples = workspace.slots.radiance().chunks_exact(batch.len());
     for (sample, slots) in samples.zip(of_samples) {
         for (pixel, radiance) in batch.clone().zip(slots) {

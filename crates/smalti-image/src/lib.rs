@@ -1,0 +1,24 @@
+//! Linear images in and out (PFM, PNG, EXR, Radiance HDR), tone mapping, provenance and the hash of an image.
+//!
+//! What a file holds is a pure function of the image, its provenance and the exposure: the same render gives the same
+//! bytes. Files are written atomically: at every moment the destination is absent, the old file or the new one.
+
+mod destination;
+mod difference;
+mod exr;
+mod file;
+mod format;
+mod hash;
+mod pfm;
+mod png;
+mod provenance;
+mod radiance;
+mod tone;
+
+pub use destination::{DestinationError, check_destination};
+pub use difference::{Difference, difference, difference_scale};
+pub use file::{ReadError, WriteError, read, write};
+pub use format::{Format, FormatError};
+pub use hash::hash;
+pub use provenance::Provenance;
+pub use tone::{from_srgb, tone_map};

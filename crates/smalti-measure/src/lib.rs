@@ -1,0 +1,13 @@
+//! Statistics of images and of measurements: metrics against a reference, the error that a render states of itself, and
+//! what a series of timings says. Pure functions; no files, no clock.
+
+mod compare;
+mod interval;
+mod neighbours;
+mod relative;
+mod statement;
+mod timing;
+
+pub use compare::{CompareError, Comparison, PixelDifference, compare};
+pub use statement::{ErrorStatement, error_statement};
+pub use timing::{efficiency, median, parallel_efficiency, quantile, speed_up};

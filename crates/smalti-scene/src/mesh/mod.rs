@@ -1,0 +1,127 @@
+//! `[[mesh]]`: triangles from a file (PLY, OBJ) or written out, transformed, and cleared of those without area.
+
+mod inline;
+mod obj;
+mod ply;
+mod soup;
+mod transform;
+
+use std::path::Path;
+
+use smalti_core::scene::world::Mesh;
+
+use crate::document::{Key, Node, Section, key};
+use crate::error::{Excerpt, Fault, Result};
+use crate::file;
+use crate::material::Palette;
+use crate::surface::{Skin, skin};
+use soup::{Flaw, Soup};
+
+const KEYS: &[Key] = &[
+    key("material", "\"white\""),
+    key("file", "\"blob.ply\""),
+    key("vertices", "[[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]"),
+    key("faces", "[[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]"),
+    key("translate", "[0, 0, 1]"),
+    key("rotate", "[0, 0, 90]"),
+    key("scale", "2"),
+    key("radiance", "[1, 1, 1]"),
+];
+
+/// All meshes, in file order; `file` is relative to `folder`. What is dropped is noted.
+pub fn read_all(root: &Section, palette: &Palette, folder: &Path, notes: &mut Vec<String>) -> Result<Vec<Mesh>> {
+    let mut meshes = Vec::new();
+    for (index, section) in root.items("mesh", "`[[mesh]]`", KEYS)?.iter().enumerate() {
+        let Skin { material, radiance } = skin(section, palette)?;
+        let (name, mut soup) = soup(section, folder, index)?;
+        transform::apply(section, &mut soup.vertices)?;
+        notes.extend(drop_degenerate(&name, &mut soup));
+        meshes.push(Mesh { vertices: soup.vertices, faces: soup.faces, material, radiance });
+    }
+    Ok(meshes)
+}
+
+/// The triangles as they are written, and what to call them.
+fn soup(section: &Section, folder: &Path, index: usize) -> Result<(String, Soup)> {
+    match (section.find("file"), section.find("vertices").or(section.find("faces"))) {
+        (Some(file), None) => Ok((format!("`{}`", file.text()?), from_file(file, folder)?)),
+        (Some(file), Some(also)) => {
+            Err(Fault::at(also.span(), "the mesh has both a file and triangles of its own", "")
+                .help(format!("keep `{}`, or `vertices` and `faces`", file.name)))
+        }
+        (None, Some(_)) => Ok((format!("mesh {}", index + 1), inline::read(section)?)),
+        (None, None) => Err(Fault::at(section.span.clone(), "the mesh has no triangles", "")
+            .help("give it `file = \"blob.ply\"`, or `vertices` and `faces`")),
+    }
+}
+
+fn from_file(node: Node, folder: &Path) -> Result<Soup> {
+    let path = folder.join(node.text()?);
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let read = match extension.as_str() {
+        "ply" => ply::read,
+        "obj" => obj::read,
+        _ => {
+            let fault = Fault::at(node.span(), "unknown kind of mesh file", "");
+            return Err(fault.help("its name must end in .ply or .obj"));
+        }
+    };
+    let bytes = file::mesh_bytes(&path)
+        .map_err(|(title, help)| Fault::at(node.span(), title, path.display().to_string()).maybe_help(help))?;
+    read(&bytes).map_err(|flaw| broken(node, &path, &bytes, flaw))
+}
+
+/// The answer to a broken mesh file: the place that names it, and the file's own line if it has lines.
+fn broken(node: Node, path: &Path, bytes: &[u8], flaw: Flaw) -> Box<Fault> {
+    let mut fault = Fault::at(node.span(), format!("broken mesh file: {}", flaw.message), "");
+    fault.excerpt = flaw.line.map(|line| Excerpt {
+        path: path.display().to_string(),
+        line,
+        text: line_of(bytes, line),
+        label: String::new(),
+    });
+    fault
+}
+
+/// Line number `line` (from 1), cut where it is longer than anyone reads.
+fn line_of(bytes: &[u8], line: usize) -> String {
+    let found = bytes.split(|byte| *byte == b'\n').nth(line - 1).unwrap_or_default();
+    String::from_utf8_lossy(&found[..found.len().min(100)]).trim_end().to_owned()
+}
+
+/// Drops triangles whose cross product of edges is zero or not finite: they cannot be hit. Says how many.
+fn drop_degenerate(name: &str, soup: &mut Soup) -> Option<String> {
+    let Soup { vertices, faces } = soup;
+    let all = faces.len();
+    faces.retain(|face| {
+        let [a, b, c] = face.map(|index| vertices[index as usize]);
+        let cross = (b - a).cross(c - a);
+        cross.is_finite() && cross != glam::DVec3::ZERO
+    });
+    let dropped = all - faces.len();
+    (dropped > 0).then(|| format!("{name}: {dropped} of {all} triangles have no area and are dropped"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    #[test]
+    fn triangles_without_area_are_counted() {
+        let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::X * 2.0, DVec3::Y, DVec3::X * 1e200, DVec3::Y * 1e200];
+        let faces = vec![[0, 1, 3], [0, 1, 2], [1, 1, 3], [0, 4, 5]];
+        let mut soup = Soup { vertices, faces };
+        let note = drop_degenerate("`a.ply`", &mut soup).unwrap();
+        assert_eq!(note, "`a.ply`: 3 of 4 triangles have no area and are dropped");
+        assert_eq!(soup.faces, [[0, 1, 3]]);
+        assert_eq!(drop_degenerate("`a.ply`", &mut soup), None);
+    }
+
+    #[test]
+    fn lines_are_cut_and_need_not_exist() {
+        assert_eq!(line_of(b"a\r\nb\xff\n", 2), "b\u{fffd}");
+        assert_eq!(line_of(b"a", 7), "");
+        assert_eq!(line_of(&[b'x'; 1000], 1).len(), 100);
+    }
+}

@@ -1,0 +1,82 @@
+//! From the document to the world: all kinds of tables in turn, then what only the whole can show.
+
+use std::path::Path;
+
+use smalti_core::scene::World;
+use smalti_core::scene::world::{Material, Rgb};
+use toml::Spanned;
+use toml::de::DeTable;
+
+use crate::document::{Key, Section, key};
+use crate::error::Result;
+use crate::material::Palette;
+use crate::render_table::RenderTable;
+use crate::{camera, light, mesh, surface};
+
+const KINDS: &[Key] = &[
+    key("camera", ""),
+    key("render", ""),
+    key("material", ""),
+    key("polygon", ""),
+    key("quad", ""),
+    key("triangle", ""),
+    key("sphere", ""),
+    key("mesh", ""),
+    key("light", ""),
+    key("environment", ""),
+];
+
+/// The document as a table whose keys are the kinds.
+pub fn root<'d>(document: &'d Spanned<DeTable<'d>>) -> Result<Section<'d>> {
+    Section::of_entries(document.get_ref(), "the scene file".to_owned(), document.span(), KINDS)
+}
+
+/// The world and the settings that `document` describes, and notes; mesh files are relative to `folder`.
+pub fn read<'d>(document: &'d Spanned<DeTable<'d>>, folder: &Path) -> Result<(World, RenderTable, Vec<String>)> {
+    let root = root(document)?;
+    let mut notes = Vec::new();
+    let cameras = camera::read(&root)?;
+    let settings = RenderTable::read(&root)?;
+    let mut palette = Palette::read(&root)?;
+    let mut world = World {
+        polygons: surface::polygons(&root, &palette)?,
+        spheres: surface::spheres(&root, &palette)?,
+        meshes: mesh::read_all(&root, &palette, folder, &mut notes)?,
+        cameras,
+        ..World::default()
+    };
+    light::read(&root, &mut palette, &mut world)?;
+    let names = palette.names;
+    world.materials = palette.materials;
+    remove_clear(&mut world, &names, &mut notes);
+    if !has_light(&world) {
+        notes.push("nothing in the scene emits light: the image will be black".to_owned());
+    }
+    Ok((world, settings, notes))
+}
+
+/// Removes surfaces that cannot be seen: a dielectric with an index of exactly 1 that emits nothing.
+fn remove_clear(world: &mut World, names: &[&str], notes: &mut Vec<String>) {
+    let World { materials, polygons, spheres, meshes, .. } = world;
+    let mut removed = vec![0usize; materials.len()];
+    let mut keep = |material: usize, radiance: Option<Rgb>| {
+        let clear = materials[material] == Material::Dielectric { ior: 1.0 } && radiance.is_none();
+        removed[material] += usize::from(clear);
+        !clear
+    };
+    polygons.retain(|polygon| keep(polygon.material, polygon.radiance));
+    spheres.retain(|sphere| keep(sphere.material, sphere.radiance));
+    meshes.retain(|mesh| keep(mesh.material, mesh.radiance));
+    for (name, count) in names.iter().zip(removed).filter(|(_, count)| *count > 0) {
+        let what = if count == 1 { "1 surface is".to_owned() } else { format!("{count} surfaces are") };
+        notes.push(format!("material `{name}` has an index of exactly 1 and cannot be seen: {what} removed"));
+    }
+}
+
+fn has_light(world: &World) -> bool {
+    world.environment.is_some()
+        || !world.point_lights.is_empty()
+        || world.polygons.iter().any(|polygon| polygon.radiance.is_some())
+        || world.spheres.iter().any(|sphere| sphere.radiance.is_some())
+        || world.meshes.iter().any(|mesh| mesh.radiance.is_some())
+}

@@ -1,0 +1,98 @@
+//! What loads with a warning, and what a scene's hash depends on.
+
+use std::fs;
+use std::path::Path;
+
+use smalti_core::scene::World;
+use smalti_scene::{Loaded, load};
+
+const CAMERA: &str = "[camera]\neye = [0, -5, 1]\nlook_at = [0, 0, 1]\nup = [0, 0, 1]\nfov = 60\n\
+                      [material.white]\nlambert = { albedo = 0.5 }\n[environment]\nradiance = 1\n";
+
+/// Loads `CAMERA` and `rest` from `folder`.
+fn scene(folder: &Path, rest: &str) -> Loaded {
+    let path = folder.join("scene.toml");
+    fs::write(&path, format!("{CAMERA}{rest}")).unwrap();
+    load(&path).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn alone(rest: &str) -> Loaded {
+    scene(tempfile::tempdir().unwrap().path(), rest)
+}
+
+fn counts(world: &World) -> [usize; 3] {
+    [world.polygons.len(), world.spheres.len(), world.meshes.len()]
+}
+
+#[test]
+fn clear_surfaces_are_removed_unless_they_emit() {
+    let ball = "[[sphere]]\nmaterial = 'air'\ncentre = [0, 0, 0]\nradius = 1\n";
+    let triangle = "[[triangle]]\nmaterial = 'air'\nvertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\n";
+    let air =
+        |ior: &str| format!("[material.air]\ndielectric = {{ ior = {ior} }}\n{ball}{triangle}{ball}radiance = 1\n");
+    let loaded = alone(&air("1"));
+    assert_eq!(counts(&loaded.world), [0, 1, 0]);
+    let note = "material `air` has an index of exactly 1 and cannot be seen: 2 surfaces are removed";
+    assert_eq!(loaded.notes, [note]);
+    assert_eq!(counts(&alone(&air("1.0000001")).world), [1, 2, 0]);
+}
+
+#[test]
+fn triangles_without_area_are_dropped_and_noted() {
+    let mesh = "[[mesh]]\nmaterial = 'white'\nvertices = [[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0]]\n\
+                faces = [[0, 1, 2], [0, 1, 3]]\n";
+    let loaded = alone(mesh);
+    assert_eq!(loaded.notes, ["mesh 1: 1 of 2 triangles have no area and are dropped"]);
+    assert_eq!(loaded.world.meshes[0].faces, [[0, 1, 3]]);
+}
+
+#[test]
+fn a_dark_scene_is_noted() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("dark.toml");
+    let dark = "[[light.point]]\nposition = [0, 0, 3]\nintensity = 0\n";
+    fs::write(&path, CAMERA.replace("radiance = 1", "radiance = [0, 0, 0]") + dark).unwrap();
+    let loaded = load(&path).unwrap();
+    assert_eq!(loaded.notes, ["nothing in the scene emits light: the image will be black"]);
+    assert_eq!((loaded.world.environment, loaded.world.point_lights.len()), (None, 0));
+}
+
+#[test]
+fn surfaces_keep_the_order_of_the_file() {
+    let corners =
+        |x: u32| format!("material = 'white'\nvertices = [[{x}, 0, 0], [{x}, 1, 0], [{x}, 1, 1], [{x}, 0, 1]]\n");
+    let lamp = corners(9).replace("material = 'white'", "radiance = 1");
+    let rest =
+        format!("[[light.quad]]\n{lamp}[[quad]]\n{}[[polygon]]\n{}[[quad]]\n{}", corners(0), corners(1), corners(2));
+    let places: Vec<f64> = alone(&rest).world.polygons.iter().map(|polygon| polygon.vertices[0].x).collect();
+    assert_eq!(places, [0.0, 1.0, 2.0, 9.0], "surfaces, then lamps");
+}
+
+#[test]
+fn cameras_keep_their_names_and_order() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("two.toml");
+    let camera =
+        |name: &str| CAMERA.split("[material").next().unwrap().replace("[camera]", &format!("[camera.{name}]"));
+    fs::write(&path, camera("right") + &camera("left")).unwrap();
+    let names: Vec<String> = load(&path).unwrap().world.cameras.into_iter().map(|camera| camera.name).collect();
+    assert_eq!(names, ["right", "left"]);
+    assert_eq!(alone("").world.cameras[0].name, "");
+}
+
+#[test]
+fn the_hash_is_of_the_world_not_of_the_words() {
+    let folder = tempfile::tempdir().unwrap();
+    let obj = "# any\nv 0 0 0\nv 1 0 0\nv 0 1 0.5\nf 1 2 3\n";
+    let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+               element face 1\nproperty list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0.5\n3 0 1 2\n";
+    fs::write(folder.path().join("a.obj"), obj).unwrap();
+    fs::write(folder.path().join("b.PLY"), ply).unwrap();
+    let hash = |rest: &str| scene(folder.path(), rest).scene_hash;
+    let written = "vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0.5]]\nfaces = [[0, 1, 2]]\n";
+    let plain = hash(&format!("[[mesh]]\nmaterial = 'white'\n{written}"));
+    assert_eq!(plain, hash("# a comment\n[[mesh]]\nfile='a.obj' # another\nmaterial   = \"white\"\n"));
+    assert_eq!(plain, hash("[[mesh]]\nmaterial = 'white'\nfile = 'b.PLY'\nscale = 1\n[render]\nspp = 3\n"));
+    assert_ne!(plain, hash("[[mesh]]\nmaterial = 'white'\nfile = 'b.PLY'\nscale = 2\n"));
+    assert_ne!(plain, hash(&format!("[[mesh]]\nmaterial = 'white'\nradiance = 1\n{written}")));
+}

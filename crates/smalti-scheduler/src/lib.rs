@@ -1,0 +1,23 @@
+//! Performs a render on all cores through rayon and tells what happened through a crossbeam channel.
+//!
+//! A unit of work is one tile in one pass. Passes grow (1, 1, 2, 4 ... samples a pixel) so that a picture is there at
+//! once. A tile is worked on by one thread at a time and every sample is a function of its own number, so neither the
+//! number of threads nor the order of the units can change a bit of the image. Whoever watches receives facts in the
+//! past tense ([`Event`]); no worker ever waits for a watcher.
+
+mod account;
+mod cancel;
+mod event;
+mod outcome;
+mod pass;
+mod pool;
+mod progress;
+mod render;
+mod unit;
+
+pub use cancel::Cancel;
+pub use event::{ErrorOf, Event, Watch};
+pub use outcome::{Balance, Outcome, Panicked, Rejections, Timing};
+pub use pool::{PoolError, pool};
+pub use progress::{Current, Progress};
+pub use render::render;

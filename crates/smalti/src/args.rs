@@ -1,0 +1,278 @@
+//! Arguments as typed. Nothing here looks at the machine, the scene or the disk: [`crate::job`] does.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use smalti_core::settings::Rect;
+
+use crate::names::{FresnelArg, IntegratorArg, SamplerArg, SimdArg};
+use crate::parse::{Size, parse_crop, parse_finite, parse_size, parse_threads, parse_threshold};
+
+/// A physically based CPU renderer for people who work in a terminal.
+#[derive(Debug, Parser)]
+#[command(name = "smalti", version, propagate_version = true, max_term_width = 100, after_help = EXAMPLES)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+    /// Colours of the output; auto: on a terminal, unless NO_COLOR is set
+    #[arg(long, global = true, value_name = "WHEN", default_value = "auto", hide_possible_values = true)]
+    pub color: When,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  smalti render scenes/hexroom.toml                        writes hexroom.png here
+  smalti render scenes/hexroom.toml --spp 256 -o room.exr  linear radiance, less noise
+  smalti explain scenes/hexroom.toml                       what the scene requires, and why
+  smalti compare room.exr reference.exr --max-relmse 0.01  a check for scripts
+
+Exit codes:
+  0 done; 1 a check failed; 2 a mistake in arguments or scene; 74 the output could not be written;
+  101 a bug in smalti; 129, 130, 143 interrupted, the picture so far is kept";
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a scene to image files
+    Render(RenderArgs),
+    /// Say what a scene requires: stages, reasons, memory, SIMD levels
+    Explain(ExplainArgs),
+    /// Measure one thread against many: time, speed-up, efficiency, tile balance, same bits
+    Scaling(ScalingArgs),
+    /// Measure how far an image is from a reference
+    Compare(CompareArgs),
+    /// Replay one pixel, or one sample of it bounce by bounce
+    Pixel(PixelArgs),
+}
+
+/// Arguments of `smalti render`.
+#[derive(Debug, Args)]
+#[command(after_help = RENDER_EXAMPLES)]
+pub struct RenderArgs {
+    /// Scene file (TOML)
+    pub scene: PathBuf,
+    /// Image file: .png, .exr, .pfm or .hdr; may be repeated [default: the scene's name with .png, here]
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub outputs: Vec<PathBuf>,
+    #[command(flatten)]
+    pub image: ImageArgs,
+    /// Brightness of PNG files in stops: every step doubles it; other formats hold linear radiance
+    #[arg(long, value_name = "EV", value_parser = parse_finite, allow_negative_numbers = true)]
+    pub exposure: Option<f64>,
+    /// Worker threads; 0: one for each logical core
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=MAX_THREADS))]
+    pub threads: u32,
+    #[command(flatten)]
+    pub work: WorkArgs,
+    /// How progress is shown on stderr
+    #[arg(long, value_name = "HOW", default_value = "auto")]
+    pub progress: ProgressArg,
+    /// No progress and no summary; errors and warnings only
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// Exit with 1 if a sample was not finite
+    #[arg(long)]
+    pub strict: bool,
+    /// Print the summary as one JSON object on stdout
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// More threads than any machine has; a number above is a slip.
+pub const MAX_THREADS: i64 = 4096;
+
+const RENDER_EXAMPLES: &str = "\
+Examples:
+  smalti render room.toml                            writes room.png here
+  smalti render room.toml -o room.exr -o room.png    both, from one render
+  smalti render room.toml --size 200x200 --spp 4     a quick look
+  smalti render room.toml --crop 120,80,64,64        these pixels as in the whole image, bit for bit
+  smalti render room.toml --json --progress none     for a script
+
+Flags override the scene's [render] table. Threads, tile size and SIMD level change no bit of the image.
+Ctrl-C keeps the picture so far; twice leaves at once.";
+
+/// Flags that change the image; each overrides its key in the scene's `[render]` table.
+#[derive(Clone, Debug, Default, Args)]
+#[command(next_help_heading = "Image")]
+pub struct ImageArgs {
+    /// Light transport algorithm; whitted has no indirect diffuse light
+    #[arg(long, value_name = "NAME")]
+    pub integrator: Option<IntegratorArg>,
+    /// Samples (camera paths) for each pixel
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub spp: Option<u32>,
+    /// Light samples at each diffuse vertex in all; 0: light is found by chance only
+    #[arg(long, value_name = "N")]
+    pub shadow_rays: Option<u32>,
+    /// Scattering events after which a path ends (biased); without it only roulette ends a path
+    #[arg(long, value_name = "N")]
+    pub max_bounces: Option<u32>,
+    /// Where the random numbers come from
+    #[arg(long, value_name = "NAME")]
+    pub sampler: Option<SamplerArg>,
+    /// Another seed is another realisation of the noise
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// Size of the whole image in pixels
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    pub size: Option<Size>,
+    /// Render only this part of the image: column and row of its top left pixel, width, height
+    #[arg(long, value_name = "X,Y,W,H", value_parser = parse_crop)]
+    pub crop: Option<Rect>,
+    /// Which of the scene's cameras
+    #[arg(long, value_name = "NAME")]
+    pub camera: Option<String>,
+    /// Every sample passes through its pixel's centre (edges become jagged)
+    #[arg(long)]
+    pub no_jitter: bool,
+    /// Reflectance of dielectrics
+    #[arg(long, value_name = "NAME")]
+    pub fresnel: Option<FresnelArg>,
+}
+
+/// Flags that say how the machine works; no bit of the image depends on them.
+#[derive(Debug, Args)]
+pub struct WorkArgs {
+    /// Side of a tile in pixels [default: the scene's, or 32]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub tile: Option<u32>,
+    #[command(flatten)]
+    pub simd: SimdArgs,
+}
+
+/// The SIMD level.
+#[derive(Debug, Args)]
+pub struct SimdArgs {
+    /// SIMD level; auto: the best that this machine has
+    #[arg(long, value_name = "LEVEL", default_value = "auto")]
+    pub simd: SimdArg,
+}
+
+/// Arguments of `smalti explain`.
+#[derive(Debug, Args)]
+pub struct ExplainArgs {
+    /// Scene file (TOML)
+    pub scene: PathBuf,
+    #[command(flatten)]
+    pub image: ImageArgs,
+    #[command(flatten)]
+    pub simd: SimdArgs,
+    /// Print one JSON object on stdout
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `smalti scaling`.
+#[derive(Debug, Args)]
+#[command(after_help = SCALING_EXAMPLES)]
+pub struct ScalingArgs {
+    /// Scene file (TOML)
+    pub scene: PathBuf,
+    /// Numbers of threads, for example 1,2,4; max: every logical core [default: 1, 2, 4 ... max]
+    #[arg(long, value_name = "LIST", value_parser = parse_threads)]
+    pub threads: Option<Threads>,
+    /// Repetitions of each number of threads; the median counts
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..))]
+    pub reps: u32,
+    #[command(flatten)]
+    pub image: ImageArgs,
+    #[command(flatten)]
+    pub work: WorkArgs,
+    /// No line for each run on stderr
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// Print one JSON object on stdout
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Numbers of threads as typed; 0 stands for `max`. (A type of its own, or clap takes a vector for repeated flags.)
+#[derive(Clone, Debug, PartialEq)]
+pub struct Threads(pub Vec<u32>);
+
+const SCALING_EXAMPLES: &str = "\
+Examples:
+  smalti scaling room.toml
+  smalti scaling room.toml --threads 1,max --reps 5 --size 400x400 --spp 16
+
+The repetitions are interleaved (1, 2, 4, 1, 2, 4 ...), so that a machine that slows down slows all alike.
+Exit code 1 if the images of any two runs differ in a bit.";
+
+/// Arguments of `smalti compare`.
+#[derive(Debug, Args)]
+pub struct CompareArgs {
+    /// Image in question: .exr, .pfm, .hdr or .png
+    pub image: PathBuf,
+    /// Image that is taken as the truth
+    pub reference: PathBuf,
+    /// Write a difference picture
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Exit with 1 if the relmse is above this
+    #[arg(long, value_name = "X", value_parser = parse_threshold, allow_negative_numbers = true)]
+    pub max_relmse: Option<f64>,
+    /// Exit with 1 if the root mean square error is above this
+    #[arg(long, value_name = "X", value_parser = parse_threshold, allow_negative_numbers = true)]
+    pub max_rmse: Option<f64>,
+    /// Print one JSON object on stdout
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `smalti pixel`.
+#[derive(Debug, Args)]
+pub struct PixelArgs {
+    /// Scene file (TOML)
+    pub scene: PathBuf,
+    /// Column, from 0 at the left of the whole image
+    pub x: u32,
+    /// Row, from 0 at the top of the whole image
+    pub y: u32,
+    /// Replay this sample (from 0) bounce by bounce; without it every sample's radiance is summed up
+    #[arg(long, value_name = "N")]
+    pub sample: Option<u32>,
+    #[command(flatten)]
+    pub image: ImageArgs,
+    #[command(flatten)]
+    pub simd: SimdArgs,
+    /// Print one JSON object on stdout
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// When to use colours.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+pub enum When {
+    Auto,
+    Always,
+    Never,
+}
+
+/// How to show progress.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+pub enum ProgressArg {
+    /// Bars on a terminal, plain lines elsewhere
+    Auto,
+    /// Live bars
+    Bar,
+    /// Plain lines for a log
+    Plain,
+    /// One JSON object a line
+    Json,
+    /// Nothing
+    None,
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn definitions_are_sound() {
+        Cli::command().debug_assert();
+    }
+}

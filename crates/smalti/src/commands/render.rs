@@ -1,0 +1,183 @@
+//! `smalti render`: a scene becomes image files and an account of how good they are.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use rayon::ThreadPool;
+use smalti_core::film::Film;
+use smalti_core::render::Renderer;
+use smalti_scheduler::{Outcome, Watch};
+
+use crate::args::{ProgressArg, RenderArgs, When};
+use crate::describe::describe;
+use crate::exit::{Failure, Status};
+use crate::frontend::{self, Mode, Title};
+use crate::interrupt::{self, Interrupt};
+use crate::job::Job;
+use crate::print::{self, Messages};
+use crate::summary::{Developed, Summary, Work, develop, summary};
+use crate::{error_statement, memory, provenance};
+
+/// Runs the command. `start` is when the process began.
+pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Failure> {
+    let messages = Messages { json: args.progress == ProgressArg::Json };
+    let outputs = outputs(args)?;
+    let job = Job::load(&args.scene, &args.image, args.work.simd.simd)?;
+    job.notes.iter().for_each(|note| messages.note(note));
+    let pool = smalti_scheduler::pool(args.threads as usize).map_err(Failure::user)?;
+    let renderer = pool.install(|| job.renderer())?;
+    let interrupt = interrupt::listen(frontend::restore).map_err(Failure::bug)?;
+    let work = Work { threads: pool.current_num_threads(), tile: job.tile(args.work.tile), setup: start.elapsed() };
+
+    let mode = Mode::choose(args.progress, args.quiet, colour);
+    let mut outcome = perform(&renderer, &pool, &interrupt, work, mode, title(args, &job, work))?;
+    let developed = develop(&outcome.film);
+    // Encoding needs memory too: the film, six times as large as the image, makes room.
+    outcome.film.tiles = Vec::new();
+    if let Some(signal) = interrupt.signal().filter(|_| outcome.interrupted) {
+        messages.warning(&interrupted(signal, developed.samples, job.settings.spp));
+    }
+    if developed.samples.1 > 0 {
+        let mut summary = summary(&job, work, &outcome, &developed);
+        let written = write(&outputs, &developed, &mut summary, job.exposure(args.exposure));
+        summary.wall_seconds = start.elapsed().as_secs_f64();
+        tell(args, &summary, messages)?;
+        written?;
+    }
+    Ok(status(args.strict, &outcome, &interrupt))
+}
+
+/// Files to write, each possible as far as can be told.
+fn outputs(args: &RenderArgs) -> Result<Vec<PathBuf>, Failure> {
+    let mut outputs = args.outputs.clone();
+    if outputs.is_empty() {
+        let no_name = || Failure::user(format!("{} is no scene file", args.scene.display()));
+        let mut name = args.scene.file_stem().ok_or_else(no_name)?.to_owned();
+        name.push(".png");
+        outputs.push(name.into());
+    }
+    for (index, path) in outputs.iter().enumerate() {
+        smalti_image::check_destination(path).map_err(Failure::user)?;
+        if outputs[..index].contains(path) {
+            return Err(Failure::user(format!("{} is named twice", path.display())));
+        }
+    }
+    Ok(outputs)
+}
+
+fn title(args: &RenderArgs, job: &Job, work: Work) -> Title {
+    let area = job.settings.area();
+    Title {
+        scene: job.path.display().to_string(),
+        size: (area.width, area.height),
+        spp: job.settings.spp,
+        integrator: job.settings.integrator.name(),
+        threads: work.threads,
+        level: job.level.name(),
+        setup: work.setup,
+        exposure: job.exposure(args.exposure),
+    }
+}
+
+/// Renders while a display shows it.
+fn perform(
+    renderer: &Renderer,
+    pool: &ThreadPool,
+    interrupt: &Interrupt,
+    work: Work,
+    mode: Mode,
+    title: Title,
+) -> Result<Outcome, Failure> {
+    let film = Film::new(renderer.settings().area(), work.tile);
+    let (display, watch) = frontend::start(mode, title);
+    let watch = watch.map(|watch| Watch { error: Some(Box::new(live_error)), ..watch });
+    let outcome = smalti_scheduler::render(renderer, film, pool, &interrupt.cancel, watch);
+    display.finish();
+    outcome.map_err(Failure::bug)
+}
+
+fn live_error(film: &Film) -> Option<f64> {
+    error_statement::of(film).map(|error| error.relative_error)
+}
+
+fn interrupted(signal: i32, (least, most): (u32, u32), spp: u32) -> String {
+    let by = interrupt::name(signal);
+    match (least, most) {
+        (_, 0) => format!("interrupted by {by} before the first sample: nothing is written"),
+        (a, b) if a == b => format!("interrupted by {by}: the picture so far is kept, {a} of {spp} samples a pixel"),
+        _ => format!("interrupted by {by}: the picture so far is kept, {least} to {most} of {spp} samples a pixel"),
+    }
+}
+
+/// Writes every file that can be written; an error names the others.
+fn write(outputs: &[PathBuf], developed: &Developed, summary: &mut Summary, exposure: f32) -> Result<(), Failure> {
+    let start = Instant::now();
+    let provenance = provenance::of(summary);
+    let mut failures = Vec::new();
+    for path in outputs {
+        match smalti_image::write(path, &developed.image, &provenance, exposure) {
+            Ok(()) => summary.outputs.push(path.display().to_string()),
+            Err(error) => failures.push(error.to_string()),
+        }
+    }
+    summary.write_seconds = start.elapsed().as_secs_f64();
+    summary.peak_bytes = memory::peak_bytes();
+    if failures.is_empty() { Ok(()) } else { Err(Failure::output(failures.join("\n"))) }
+}
+
+/// Tells the user what came of it.
+fn tell(args: &RenderArgs, summary: &Summary, messages: Messages) -> Result<(), Failure> {
+    if let Some(first) = summary.nonfinite_samples.first() {
+        let count = summary.nonfinite;
+        messages.warning(&format!("{count} samples were not finite and count as 0; the first: {}", first.replay));
+    }
+    match (args.json, args.quiet) {
+        (true, _) => print::json(summary),
+        (false, false) => print::result(&describe(summary)),
+        (false, true) => Ok(()),
+    }
+}
+
+fn status(strict: bool, outcome: &Outcome, interrupt: &Interrupt) -> Status {
+    match interrupt.signal() {
+        Some(signal) if outcome.interrupted => Status::Interrupted(signal),
+        _ if strict && outcome.rejected.count > 0 => Status::CheckFailed,
+        _ => Status::Done,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+    use crate::args::{Cli, Command};
+
+    fn typed(line: &str) -> RenderArgs {
+        match Cli::try_parse_from(line.split(' ')).unwrap().command {
+            Command::Render(args) => args,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn the_default_output_has_the_scenes_name_and_lies_here() {
+        assert_eq!(outputs(&typed("smalti render far/away/room.v2.toml")), Ok(vec!["room.v2.png".into()]));
+        assert!(outputs(&typed("smalti render ..")).is_err());
+    }
+
+    #[test]
+    fn outputs_are_checked() {
+        let message = |line: &str| outputs(&typed(line)).unwrap_err().message;
+        assert!(message("smalti render a.toml -o a.pgn").contains(".png"));
+        assert!(message("smalti render a.toml -o no/such/folder/a.png").contains("no/such/folder"));
+        assert!(message("smalti render a.toml -o a.png -o a.png").contains("twice"));
+    }
+
+    #[test]
+    fn interruptions_say_how_far_it_came() {
+        assert!(interrupted(2, (0, 0), 64).contains("SIGINT before the first sample"));
+        assert!(interrupted(15, (4, 4), 64).contains("4 of 64"));
+        assert!(interrupted(15, (4, 8), 64).contains("4 to 8 of 64"));
+    }
+}

@@ -1,0 +1,105 @@
+//! The summary of a render for people: a few lines that say what was made, how long it took and how good it is.
+
+use console::style;
+
+use crate::error_statement::{ErrorRecord, SAMPLES_NEEDED};
+use crate::memory::in_words;
+use crate::summary::Summary;
+use crate::table::{Align, table};
+
+/// The summary as text.
+pub fn describe(summary: &Summary) -> String {
+    let rows = [
+        ("image", image(summary)),
+        ("error", error(summary)),
+        ("time", time(summary)),
+        ("rays", rays(summary)),
+        ("memory", summary.peak_bytes.map(|bytes| in_words(bytes) + " at most").unwrap_or_default()),
+        ("hash", summary.hash.clone()),
+        ("again", summary.reproduce.clone().unwrap_or_default()),
+    ];
+    let mut lines: Vec<(&str, String)> = rows.into_iter().filter(|(_, text)| !text.is_empty()).collect();
+    lines.splice(2..2, summary.biases.iter().map(|bias| ("bias", bias.clone())));
+    let lines: Vec<Vec<String>> = lines.into_iter().map(|(name, text)| vec![heading(name), text]).collect();
+    format!("{}\n{}", style(summary.outputs.join(" ")).bold(), table(&[Align::Left, Align::Left], &lines))
+}
+
+fn heading(name: &str) -> String {
+    style(name).dim().to_string()
+}
+
+fn image(summary: &Summary) -> String {
+    let settings = &summary.settings;
+    let [red, green, blue] = summary.mean;
+    let (least, most) = (summary.samples_least, summary.samples_most);
+    let spp = if least == most { least.to_string() } else { format!("{least} to {most}") };
+    format!("{settings}, {spp} spp; mean {red:.5} {green:.5} {blue:.5}")
+}
+
+fn error(summary: &Summary) -> String {
+    match &summary.error {
+        Some(error) => stated(error),
+        None => {
+            format!("unknown: it takes {SAMPLES_NEEDED} samples a pixel to tell, there are {}", summary.samples_least)
+        }
+    }
+}
+
+fn stated(error: &ErrorRecord) -> String {
+    let low = percent(error.relative_error_low);
+    let range = match error.relative_error_high {
+        Some(high) => format!("{low} to {}", percent(high)),
+        None => format!("at least {low}"),
+    };
+    let uncertified = match error.uncertified_pixels {
+        0 => String::new(),
+        pixels => format!("; {pixels} pixels are too uncertain to judge"),
+    };
+    format!("{} ({range}), relmse {:.3e}{uncertified}", percent(error.relative_error), error.relmse)
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.3} %", 100.0 * share)
+}
+
+fn time(summary: &Summary) -> String {
+    format!(
+        "{:.3} s: setup {:.3}, render {:.3}, write {:.3}; {} threads, {}",
+        summary.wall_seconds,
+        summary.setup_seconds,
+        summary.render_seconds,
+        summary.write_seconds,
+        summary.threads,
+        summary.simd
+    )
+}
+
+fn rays(summary: &Summary) -> String {
+    let rays = &summary.rays;
+    let per_second = rays.all() as f64 / summary.render_seconds;
+    let speed = if per_second.is_finite() { format!("{:.1} M a second; ", per_second / 1e6) } else { String::new() };
+    let length = summary.mean_path_length.map(|length| format!("; mean path length {length:.2}")).unwrap_or_default();
+    format!("{speed}{} camera, {} scattered, {} shadow{length}", rays.camera, rays.scattered, rays.shadow)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_without_an_upper_end_are_lower_bounds() {
+        let error = ErrorRecord {
+            relmse: 0.01,
+            relmse_low: 0.005,
+            relmse_high: None,
+            relative_error: 0.1,
+            relative_error_low: 0.08,
+            relative_error_high: None,
+            uncertified_pixels: 3,
+        };
+        let expected = "10.000 % (at least 8.000 %), relmse 1.000e-2; 3 pixels are too uncertain to judge";
+        assert_eq!(stated(&error), expected);
+        let known = ErrorRecord { relative_error_high: Some(0.12), uncertified_pixels: 0, ..error };
+        assert_eq!(stated(&known), "10.000 % (8.000 % to 12.000 %), relmse 1.000e-2");
+    }
+}

@@ -1,0 +1,123 @@
+//! How fast it goes, and how long it will go on: a range, as tiles and passes do not all take the same.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+/// The past over which the pace is judged.
+const MEMORY: Duration = Duration::from_secs(20);
+/// Two marks are at least this far apart.
+const STEP: Duration = Duration::from_millis(250);
+/// Less than this says nothing.
+const LEAST: Duration = Duration::from_millis(500);
+
+/// Work done at several times since the start.
+#[derive(Clone, Debug, Default)]
+pub struct Pace {
+    marks: VecDeque<(Duration, u64)>,
+}
+
+impl Pace {
+    /// Notes that `done` of the work was done at time `at` after the start.
+    pub fn note(&mut self, at: Duration, done: u64) {
+        if self.marks.back().is_some_and(|last| at < last.0 + STEP) {
+            return;
+        }
+        self.marks.push_back((at, done));
+        while self
+            .marks
+            .front()
+            .is_some_and(|first| first.0 + MEMORY < at)
+        {
+            self.marks.pop_front();
+        }
+    }
+
+    /// When the rest of `total` will be done, counted from the last mark: by the quickest and the slowest of the pace
+    /// overall, over the last twenty seconds and over the last five. `None` while too little is known.
+    pub fn remaining(&self, total: u64) -> Option<(Duration, Duration)> {
+        let &(now, done) = self.marks.back().filter(|last| last.0 >= LEAST)?;
+        let recent = self
+            .marks
+            .iter()
+            .find(|mark| mark.0 + Duration::from_secs(5) >= now);
+        let since = [Some(&(Duration::ZERO, 0)), self.marks.front(), recent];
+        let rates = since
+            .into_iter()
+            .flatten()
+            .filter_map(|mark| rate(*mark, (now, done)));
+        let rest = total.saturating_sub(done) as f64;
+        let fastest = rates.clone().fold(0.0, f64::max);
+        let slowest = rates.fold(f64::INFINITY, f64::min);
+        let time = |rate: f64| Duration::try_from_secs_f64(rest / rate).ok();
+        Some((time(fastest)?, time(slowest)?))
+    }
+}
+
+/// Work a second between two marks; `None` when they are too near or nothing was done.
+fn rate(from: (Duration, u64), to: (Duration, u64)) -> Option<f64> {
+    let time = to.0.saturating_sub(from.0);
+    let rate = to.1.saturating_sub(from.1) as f64 / time.as_secs_f64();
+    (time >= LEAST && rate > 0.0).then_some(rate)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn seconds(seconds: f64) -> Duration {
+        Duration::from_secs_f64(seconds)
+    }
+
+    fn pace(done: impl Fn(f64) -> u64, until: u32) -> Pace {
+        let mut pace = Pace::default();
+        for quarter in 0..=4 * until {
+            let at = f64::from(quarter) / 4.0;
+            pace.note(seconds(at), done(at));
+        }
+        pace
+    }
+
+    #[test]
+    fn a_steady_pace_is_a_narrow_range() {
+        let (low, high) = pace(|at| (at * 100.0) as u64, 30)
+            .remaining(10_000)
+            .unwrap();
+        assert!(
+            (low.as_secs_f64() - 70.0).abs() < 0.01 && (high.as_secs_f64() - 70.0).abs() < 0.01,
+            "{low:?} {high:?}"
+        );
+    }
+
+    #[test]
+    fn a_pace_that_halved_is_a_wide_one() {
+        // 100 a second for 10 s, then 50 a second for 10 s: 1500 in 20 s, 75 a second overall.
+        let slowing = |at: f64| (at.min(10.0) * 100.0 + (at - 10.0).max(0.0) * 50.0) as u64;
+        let (low, high) = pace(slowing, 20).remaining(3000).unwrap();
+        assert!(
+            (low.as_secs_f64() - 20.0).abs() < 0.01 && (high.as_secs_f64() - 30.0).abs() < 0.01,
+            "{low:?} {high:?}"
+        );
+    }
+
+    #[test]
+    fn nothing_is_invented() {
+        assert_eq!(Pace::default().remaining(10), None);
+        assert_eq!(pace(|_| 0, 9).remaining(10), None);
+        let mut early = Pace::default();
+        early.note(seconds(0.4), 5);
+        assert_eq!(early.remaining(10), None);
+    }
+
+    #[test]
+    fn what_is_done_takes_no_time() {
+        assert_eq!(
+            pace(|at| at as u64, 9).remaining(9),
+            Some((Duration::ZERO, Duration::ZERO))
+        );
+    }
+
+    #[test]
+    fn long_renders_take_little_memory() {
+        assert!(pace(|at| at as u64, 1000).marks.len() <= 82);
+    }
+}

@@ -1,0 +1,283 @@
+//! From arguments as typed to a job that can start: the scene is read, flags override its settings, and every mistake
+//! that a user can make is found.
+
+use std::path::{Path, PathBuf};
+
+use smalti_core::render::{Level, Renderer};
+use smalti_core::scene::World;
+use smalti_core::settings::{Rect, Settings};
+use smalti_scene::RenderTable;
+
+use crate::args::ImageArgs;
+use crate::exit::Failure;
+use crate::memory;
+use crate::names::SimdArg;
+use crate::parse::Size;
+
+/// A scene with the settings of its render, checked.
+#[derive(Debug)]
+pub struct Job {
+    /// The scene file as typed.
+    pub path: PathBuf,
+    /// What the scene file says.
+    pub world: World,
+    /// The scene's settings, overridden by flags.
+    pub settings: Settings,
+    /// Hash of what the scene file and its meshes say.
+    pub scene_hash: String,
+    /// What the reader found worth telling.
+    pub notes: Vec<String>,
+    /// The SIMD level to use.
+    pub level: Level,
+    /// What the scene suggests where no flag says otherwise: the side of a tile.
+    tile: Option<u32>,
+    /// The same for the brightness of tone-mapped files, stops.
+    exposure: Option<f64>,
+}
+
+/// Side of a tile in pixels where neither flag nor scene says otherwise.
+const TILE: u32 = 32;
+
+impl Job {
+    /// Reads `scene` and applies the flags.
+    pub fn load(scene: &Path, flags: &ImageArgs, simd: SimdArg) -> Result<Self, Failure> {
+        let level = choose_level(simd, &Level::available())?;
+        let loaded = smalti_scene::load(scene).map_err(|error| Failure::scene(&error))?;
+        let settings = merge(&loaded.settings, flags, &loaded.world)?;
+        check_area(&settings)?;
+        check_memory(&settings, memory::total_bytes())?;
+        Ok(Self {
+            path: scene.to_owned(),
+            world: loaded.world,
+            settings,
+            scene_hash: loaded.scene_hash,
+            notes: loaded.notes,
+            level,
+            tile: loaded.settings.tile,
+            exposure: loaded.settings.exposure,
+        })
+    }
+
+    /// Side of a tile in pixels.
+    pub fn tile(&self, typed: Option<u32>) -> u32 {
+        typed.or(self.tile).unwrap_or(TILE)
+    }
+
+    /// Brightness of tone-mapped files in stops.
+    pub fn exposure(&self, typed: Option<f64>) -> f32 {
+        typed.or(self.exposure).unwrap_or(0.0) as f32
+    }
+
+    /// Name of the camera that is used; empty for the only one.
+    pub fn camera(&self) -> &str {
+        &self.world.cameras[self.settings.camera].name
+    }
+
+    /// Compiles the scene and plans the render.
+    pub fn renderer(&self) -> Result<Renderer, Failure> {
+        Renderer::new(&self.world, self.settings.clone(), self.level).map_err(Failure::user)
+    }
+}
+
+/// The level that was asked for, if the machine has it; the best one for `auto`.
+fn choose_level(typed: SimdArg, available: &[Level]) -> Result<Level, Failure> {
+    let wanted = typed.level().unwrap_or(available[0]);
+    if available.contains(&wanted) {
+        return Ok(wanted);
+    }
+    let names: Vec<&str> = available.iter().map(|level| level.name()).collect();
+    Err(Failure::user(format!("this machine has no {}; it has {}", wanted.name(), names.join(", "))))
+}
+
+/// Defaults, overridden by the scene file, overridden by flags.
+fn merge(scene: &RenderTable, flags: &ImageArgs, world: &World) -> Result<Settings, Failure> {
+    let default = Settings::default();
+    let [width, height] = match flags.size {
+        Some(Size { width, height }) => [width, height],
+        None => scene.size.unwrap_or([default.width, default.height]),
+    };
+    let named = flags.camera.as_deref().map(|name| find_camera(name, world)).transpose()?;
+    Ok(Settings {
+        integrator: flags.integrator.map(Into::into).or(scene.integrator).unwrap_or(default.integrator),
+        width,
+        height,
+        crop: flags.crop.or(scene.crop),
+        spp: flags.spp.or(scene.spp).unwrap_or(default.spp),
+        shadow_rays: flags.shadow_rays.or(scene.shadow_rays).unwrap_or(default.shadow_rays),
+        max_bounces: flags.max_bounces.or(scene.max_bounces),
+        sampler: flags.sampler.map(Into::into).or(scene.sampler).unwrap_or(default.sampler),
+        seed: flags.seed.or(scene.seed).unwrap_or(default.seed),
+        fresnel: flags.fresnel.map(Into::into).or(scene.fresnel).unwrap_or(default.fresnel),
+        jitter: !flags.no_jitter && scene.jitter.unwrap_or(default.jitter),
+        camera: named.unwrap_or(default.camera),
+    })
+}
+
+/// Index of the camera called `name`.
+fn find_camera(name: &str, world: &World) -> Result<usize, Failure> {
+    if let Some(index) = world.cameras.iter().position(|camera| camera.name == name) {
+        return Ok(index);
+    }
+    let names: Vec<&str> = world.cameras.iter().map(|camera| camera.name.as_str()).filter(|n| !n.is_empty()).collect();
+    if names.is_empty() {
+        return Err(Failure::user(format!("no camera is called '{name}': the scene's only camera has no name")));
+    }
+    let meant = nearest(name, &names).map_or(".".into(), |near| format!("; did you mean '{near}'?"));
+    Err(Failure::user(format!("no camera is called '{name}'{meant} The scene has: {}", names.join(", "))))
+}
+
+/// The candidate most like `name`, if any is like it at all; the first of equals.
+fn nearest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
+    let mut best = (0.75, None);
+    for &candidate in candidates {
+        let likeness = strsim::jaro_winkler(&name.to_lowercase(), &candidate.to_lowercase());
+        if likeness > best.0 {
+            best = (likeness, Some(candidate));
+        }
+    }
+    best.1
+}
+
+/// The crop must lie inside the image.
+fn check_area(settings: &Settings) -> Result<(), Failure> {
+    let (Rect { x, y, width, height }, whole) = (settings.area(), (settings.width, settings.height));
+    let inside = |start: u32, length: u32, end: u32| start.checked_add(length).is_some_and(|sum| sum <= end);
+    if inside(x, width, whole.0) && inside(y, height, whole.1) {
+        return Ok(());
+    }
+    Err(Failure::user(format!(
+        "the crop {x},{y},{width},{height} reaches outside the image of {}x{} pixels",
+        whole.0, whole.1
+    )))
+}
+
+/// A film that the machine cannot hold is refused before it is allocated.
+fn check_memory(settings: &Settings, available: Option<u64>) -> Result<(), Failure> {
+    let area = settings.area();
+    let limit = available.unwrap_or(isize::MAX as u64).min(isize::MAX as u64);
+    let needed = memory::film_bytes(area);
+    if needed.is_some_and(|bytes| bytes <= limit) {
+        return Ok(());
+    }
+    let needed =
+        needed.map_or("more memory than can be counted".into(), |bytes| memory::in_words(bytes) + " of memory");
+    let has = memory::in_words(limit);
+    let size = format!("{}x{}", area.width, area.height);
+    Err(Failure::user(format!(
+        "{size} pixels need {needed}; this machine has {has}. Make it smaller with --size, or in parts with --crop"
+    )))
+}
+
+#[cfg(test)]
+mod tests {
+    use smalti_core::scene::world::Camera;
+    use smalti_core::settings::{Fresnel, Integrator, SamplerKind};
+
+    use super::*;
+    use crate::names::{FresnelArg, IntegratorArg, SamplerArg};
+
+    fn world(names: &[&str]) -> World {
+        let camera = |name: &&str| Camera {
+            name: name.to_string(),
+            eye: [0.0; 3].into(),
+            look_at: [1.0, 0.0, 0.0].into(),
+            up: [0.0, 0.0, 1.0].into(),
+            fov: 1.0,
+        };
+        World { cameras: names.iter().map(camera).collect(), ..World::default() }
+    }
+
+    #[test]
+    fn the_scene_overrides_the_defaults() {
+        assert_eq!(merge(&RenderTable::default(), &ImageArgs::default(), &world(&[""])), Ok(Settings::default()));
+        let scene = RenderTable { spp: Some(7), jitter: Some(false), max_bounces: Some(3), ..RenderTable::default() };
+        let expected = Settings { spp: 7, jitter: false, max_bounces: Some(3), ..Settings::default() };
+        assert_eq!(merge(&scene, &ImageArgs::default(), &world(&[""])), Ok(expected));
+    }
+
+    #[test]
+    fn every_flag_overrides_its_setting() {
+        let crop = Rect { x: 1, y: 2, width: 3, height: 4 };
+        let flags = ImageArgs {
+            integrator: Some(IntegratorArg::Whitted),
+            spp: Some(11),
+            shadow_rays: Some(0),
+            max_bounces: Some(0),
+            sampler: Some(SamplerArg::Independent),
+            seed: Some(u64::MAX),
+            size: Some(Size { width: 20, height: 10 }),
+            crop: Some(crop),
+            camera: Some("left".into()),
+            no_jitter: true,
+            fresnel: Some(FresnelArg::Schlick),
+        };
+        let expected = Settings {
+            integrator: Integrator::Whitted,
+            width: 20,
+            height: 10,
+            crop: Some(crop),
+            spp: 11,
+            shadow_rays: 0,
+            max_bounces: Some(0),
+            sampler: SamplerKind::Independent,
+            seed: u64::MAX,
+            fresnel: Fresnel::Schlick,
+            jitter: false,
+            camera: 1,
+        };
+        let scene = RenderTable {
+            integrator: Some(Integrator::Path),
+            size: Some([1, 1]),
+            crop: Some(Rect::default()),
+            spp: Some(1),
+            shadow_rays: Some(1),
+            max_bounces: Some(1),
+            sampler: Some(SamplerKind::Sobol),
+            seed: Some(1),
+            fresnel: Some(Fresnel::Exact),
+            jitter: Some(true),
+            ..RenderTable::default()
+        };
+        assert_eq!(merge(&scene, &flags, &world(&["right", "left"])), Ok(expected));
+    }
+
+    #[test]
+    fn unknown_cameras_name_the_nearest() {
+        let message = find_camera("lefd", &world(&["right", "left"])).unwrap_err().message;
+        assert!(message.contains("did you mean 'left'?") && message.contains("right, left"), "{message}");
+        let message = find_camera("zzzzzzzz", &world(&["right"])).unwrap_err().message;
+        assert!(!message.contains("did you mean"), "{message}");
+        assert!(find_camera("left", &world(&[""])).unwrap_err().message.contains("no name"));
+    }
+
+    #[test]
+    fn crops_must_lie_inside() {
+        let cropped = |x, y, width, height| {
+            let crop = Some(Rect { x, y, width, height });
+            check_area(&Settings { width: 10, height: 20, crop, ..Settings::default() })
+        };
+        assert_eq!(cropped(0, 0, 10, 20), Ok(()));
+        assert_eq!(cropped(9, 19, 1, 1), Ok(()));
+        assert!(cropped(1, 0, 10, 20).is_err());
+        assert!(cropped(0, 19, 1, 2).is_err());
+        assert!(cropped(u32::MAX, 0, u32::MAX, 1).is_err());
+    }
+
+    #[test]
+    fn absurd_sizes_are_refused_with_a_number() {
+        let sized = |width, height| Settings { width, height, ..Settings::default() };
+        assert_eq!(check_memory(&sized(100, 100), Some(840_000)), Ok(()));
+        let message = check_memory(&sized(100_000, 100_000), Some(16_000_000_000)).unwrap_err().message;
+        assert!(message.contains("840 GB") && message.contains("16 GB"), "{message}");
+        assert!(check_memory(&sized(u32::MAX, u32::MAX), None).is_err());
+    }
+
+    #[test]
+    fn levels_that_the_machine_lacks() {
+        let has = [Level::Avx2, Level::Scalar];
+        assert_eq!(choose_level(SimdArg::Auto, &has), Ok(Level::Avx2));
+        assert_eq!(choose_level(SimdArg::Scalar, &has), Ok(Level::Scalar));
+        let message = choose_level(SimdArg::Neon, &has).unwrap_err().message;
+        assert_eq!(message, "this machine has no neon; it has avx2, scalar");
+    }
+}

@@ -1,0 +1,29 @@
+//! The program `smalti`: arguments, commands and frontends around the renderer.
+
+mod args;
+mod commands;
+mod describe;
+mod error_statement;
+mod exit;
+mod frontend;
+mod interrupt;
+mod job;
+mod memory;
+mod names;
+mod parse;
+mod print;
+mod provenance;
+mod record;
+mod reproduce;
+mod summary;
+mod table;
+
+use std::process::ExitCode;
+use std::time::Instant;
+
+use clap::Parser;
+
+fn main() -> ExitCode {
+    let start = Instant::now();
+    commands::run(&args::Cli::parse(), start)
+}

@@ -1,0 +1,103 @@
+//! Names that users write on the command line, and what they stand for in the core.
+
+use clap::ValueEnum;
+use smalti_core::render::Level;
+use smalti_core::settings::{Fresnel, Integrator, SamplerKind};
+
+/// Names of integrators.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+pub enum IntegratorArg {
+    Path,
+    Whitted,
+}
+
+impl From<IntegratorArg> for Integrator {
+    fn from(typed: IntegratorArg) -> Self {
+        match typed {
+            IntegratorArg::Path => Integrator::Path,
+            IntegratorArg::Whitted => Integrator::Whitted,
+        }
+    }
+}
+
+/// Names of samplers.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+pub enum SamplerArg {
+    Sobol,
+    Independent,
+}
+
+impl From<SamplerArg> for SamplerKind {
+    fn from(typed: SamplerArg) -> Self {
+        match typed {
+            SamplerArg::Sobol => SamplerKind::Sobol,
+            SamplerArg::Independent => SamplerKind::Independent,
+        }
+    }
+}
+
+/// Names of reflectance formulas.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+pub enum FresnelArg {
+    Exact,
+    Schlick,
+}
+
+impl From<FresnelArg> for Fresnel {
+    fn from(typed: FresnelArg) -> Self {
+        match typed {
+            FresnelArg::Exact => Fresnel::Exact,
+            FresnelArg::Schlick => Fresnel::Schlick,
+        }
+    }
+}
+
+/// Names of SIMD levels.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+pub enum SimdArg {
+    Auto,
+    Avx512,
+    Avx2,
+    #[value(name = "sse4.2")]
+    Sse42,
+    Sse2,
+    Neon,
+    Scalar,
+}
+
+impl SimdArg {
+    /// The level that was named; `None` for auto.
+    pub fn level(self) -> Option<Level> {
+        match self {
+            SimdArg::Auto => None,
+            SimdArg::Avx512 => Some(Level::Avx512),
+            SimdArg::Avx2 => Some(Level::Avx2),
+            SimdArg::Sse42 => Some(Level::Sse42),
+            SimdArg::Sse2 => Some(Level::Sse2),
+            SimdArg::Neon => Some(Level::Neon),
+            SimdArg::Scalar => Some(Level::Scalar),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_those_of_the_core() {
+        for level in SimdArg::value_variants() {
+            let typed = level.to_possible_value().unwrap();
+            assert_eq!(typed.get_name(), level.level().map_or("auto", Level::name));
+        }
+        for name in IntegratorArg::value_variants() {
+            assert_eq!(name.to_possible_value().unwrap().get_name(), Integrator::from(*name).name());
+        }
+        for name in SamplerArg::value_variants() {
+            assert_eq!(name.to_possible_value().unwrap().get_name(), SamplerKind::from(*name).name());
+        }
+        for name in FresnelArg::value_variants() {
+            assert_eq!(name.to_possible_value().unwrap().get_name(), Fresnel::from(*name).name());
+        }
+    }
+}

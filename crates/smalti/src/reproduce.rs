@@ -1,0 +1,133 @@
+//! The command line that makes the same image again, bit for bit, by anyone.
+
+use std::path::Path;
+
+use smalti_core::settings::{Rect, Settings};
+
+/// A command that renders what `settings` say with `spp` samples a pixel, independent of the scene's own settings.
+/// `camera` is the name of the camera, empty for the only one.
+pub fn command(scene: &Path, settings: &Settings, spp: u32, camera: &str) -> String {
+    format!("smalti render {}{}", scene_argument(scene), flags(settings, spp, camera))
+}
+
+/// A command that replays one sample of the same image.
+pub fn replay_command(scene: &Path, settings: &Settings, camera: &str, pixel: (u32, u32), sample: u32) -> String {
+    let flags = flags(settings, settings.spp, camera);
+    format!("smalti pixel {} {} {} --sample {sample}{flags}", scene_argument(scene), pixel.0, pixel.1)
+}
+
+/// Every setting as a flag; those that a scene cannot have set either are left out.
+fn flags(settings: &Settings, spp: u32, camera: &str) -> String {
+    let Settings { integrator, width, height, shadow_rays, sampler, seed, fresnel, .. } = settings;
+    let (integrator, sampler, fresnel) = (integrator.name(), sampler.name(), fresnel.name());
+    let mut flags = format!(
+        " --integrator {integrator} --size {width}x{height} --spp {spp} --shadow-rays {shadow_rays} \
+         --sampler {sampler} --seed {seed} --fresnel {fresnel}"
+    );
+    if let Some(bounces) = settings.max_bounces {
+        flags += &format!(" --max-bounces {bounces}");
+    }
+    if let Some(Rect { x, y, width, height }) = settings.crop {
+        flags += &format!(" --crop {x},{y},{width},{height}");
+    }
+    if !camera.is_empty() {
+        flags += &format!(" --camera={}", quoted(camera));
+    }
+    if !settings.jitter {
+        flags += " --no-jitter";
+    }
+    flags
+}
+
+/// The scene's path; one that looks like a flag is made to look like a path.
+fn scene_argument(scene: &Path) -> String {
+    let path = scene.to_string_lossy();
+    if path.starts_with('-') { quoted(&format!("./{path}")) } else { quoted(&path) }
+}
+
+/// As a shell reads it back.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "/._-+=:,@%".contains(c);
+    if !word.is_empty() && word.chars().all(plain) { word.into() } else { format!("'{}'", word.replace('\'', r"'\''")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+    use smalti_core::settings::{Fresnel, Integrator, SamplerKind};
+
+    use super::*;
+    use crate::args::{Cli, Command, ImageArgs};
+    use crate::parse::Size;
+
+    fn unusual() -> Settings {
+        Settings {
+            integrator: Integrator::Whitted,
+            width: 640,
+            height: 48,
+            crop: Some(Rect { x: 5, y: 6, width: 7, height: 8 }),
+            spp: 3,
+            shadow_rays: 0,
+            max_bounces: Some(4),
+            sampler: SamplerKind::Independent,
+            seed: u64::MAX,
+            fresnel: Fresnel::Schlick,
+            jitter: false,
+            camera: 1,
+        }
+    }
+
+    /// What the image flags of a typed line say.
+    fn read_back(line: &str) -> (String, ImageArgs) {
+        match Cli::try_parse_from(line.split(' ')).unwrap().command {
+            Command::Render(args) => (args.scene.display().to_string(), args.image),
+            Command::Pixel(args) => (args.scene.display().to_string(), args.image),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    fn assert_says_all(flags: &ImageArgs) {
+        let wanted = unusual();
+        assert_eq!(flags.integrator.map(Into::into), Some(wanted.integrator));
+        assert_eq!(flags.size, Some(Size { width: wanted.width, height: wanted.height }));
+        assert_eq!(flags.crop, wanted.crop);
+        assert_eq!(flags.shadow_rays, Some(wanted.shadow_rays));
+        assert_eq!(flags.max_bounces, wanted.max_bounces);
+        assert_eq!(flags.sampler.map(Into::into), Some(wanted.sampler));
+        assert_eq!(flags.seed, Some(wanted.seed));
+        assert_eq!(flags.fresnel.map(Into::into), Some(wanted.fresnel));
+        assert_eq!(flags.camera.as_deref(), Some("-left"));
+        assert!(flags.no_jitter);
+    }
+
+    #[test]
+    fn every_setting_is_read_back() {
+        let (scene, flags) = read_back(&command(Path::new("a/b.toml"), &unusual(), 12, "-left"));
+        assert_eq!((scene.as_str(), flags.spp), ("a/b.toml", Some(12)));
+        assert_says_all(&flags);
+    }
+
+    #[test]
+    fn a_replay_has_the_same_flags() {
+        let line = replay_command(Path::new("a/b.toml"), &unusual(), "-left", (3, 4), 7);
+        assert!(line.starts_with("smalti pixel a/b.toml 3 4 --sample 7 --integrator whitted"), "{line}");
+        assert_says_all(&read_back(&line).1);
+    }
+
+    #[test]
+    fn defaults_need_no_optional_flags() {
+        let line = command(Path::new("-x.toml"), &Settings::default(), 64, "");
+        let expected = "smalti render ./-x.toml --integrator path --size 400x400 --spp 64 --shadow-rays 1 \
+                        --sampler sobol --seed 0 --fresnel exact";
+        assert_eq!(line, expected);
+    }
+
+    #[test]
+    fn quotes() {
+        assert_eq!(quoted("plain/path-1.toml"), "plain/path-1.toml");
+        assert_eq!(quoted("my room.toml"), "'my room.toml'");
+        assert_eq!(quoted("it's"), r"'it'\''s'");
+        assert_eq!(quoted(""), "''");
+        assert_eq!(quoted("$HOME"), "'$HOME'");
+    }
+}

@@ -1,0 +1,214 @@
+//! The account of a render: one record, shown as text or as JSON. Its field names are a promise.
+
+use std::time::Duration;
+
+use serde::Serialize;
+use smalti_core::film::{Film, Image, ROUND};
+use smalti_core::plan::LEAST_CONTRIBUTION;
+use smalti_core::render::{RayCounts, Rejected};
+use smalti_core::settings::{Fresnel, Integrator, Rect, Settings};
+use smalti_scheduler::{Outcome, Timing};
+
+use crate::error_statement::{self, ErrorRecord};
+use crate::job::Job;
+use crate::record::{self, SettingsRecord};
+use crate::reproduce;
+
+/// Everything that is told of a render. Times in seconds; what does not exist is null.
+#[derive(Debug, Serialize)]
+pub struct Summary {
+    pub version: &'static str,
+    pub scene: String,
+    pub scene_hash: String,
+    #[serde(flatten)]
+    pub settings: SettingsRecord,
+    /// Fewest and most samples of any pixel; they differ only after an interruption.
+    pub samples_least: u32,
+    pub samples_most: u32,
+    /// Complete rounds of every pixel: what the error is judged by.
+    pub rounds: u32,
+    pub threads: usize,
+    pub simd: &'static str,
+    pub tile: u32,
+    /// Reading, compiling and building, from the start of the process.
+    pub setup_seconds: f64,
+    /// No integrator of this version emits photons.
+    pub photon_seconds: f64,
+    pub render_seconds: f64,
+    pub write_seconds: f64,
+    /// From the start of the process to the end of writing.
+    pub wall_seconds: f64,
+    /// Samples over all pixels.
+    pub samples: u64,
+    pub rays: RayRecord,
+    /// Null without a camera ray.
+    pub mean_path_length: Option<f64>,
+    pub photons_emitted: u64,
+    pub photons_stored: u64,
+    /// The process's memory at its most, where the system tells.
+    pub peak_bytes: Option<u64>,
+    pub hash: String,
+    pub nonfinite: u64,
+    /// The first samples that were not finite.
+    pub nonfinite_samples: Vec<RejectedRecord>,
+    /// Paths that the hard cap on bounces ended.
+    pub capped_paths: u64,
+    pub mean: [f64; 3],
+    pub error: Option<ErrorRecord>,
+    /// What is wrong with the image apart from noise, in words.
+    pub biases: Vec<String>,
+    pub tiles: Option<TilesRecord>,
+    /// Share of the workers' time that was spent waiting.
+    pub idle: f64,
+    /// `spp` or `interrupt`.
+    pub stopped_by: &'static str,
+    /// Whether every pixel has the samples that were asked for.
+    pub target_reached: bool,
+    pub outputs: Vec<String>,
+    /// Null where samples differ between tiles: no command gives that image.
+    pub reproduce: Option<String>,
+}
+
+#[derive(Debug, Serialize)]
+pub struct RayRecord {
+    pub camera: u64,
+    pub scattered: u64,
+    pub shadow: u64,
+}
+
+impl RayRecord {
+    /// Rays of all kinds.
+    pub fn all(&self) -> u64 {
+        self.camera + self.scattered + self.shadow
+    }
+}
+
+/// A sample that was not finite, and how to see it again.
+#[derive(Debug, Serialize)]
+pub struct RejectedRecord {
+    pub pixel: [u32; 2],
+    pub sample: u32,
+    pub replay: String,
+}
+
+/// How evenly the tiles share the work.
+#[derive(Debug, Serialize)]
+pub struct TilesRecord {
+    pub count: usize,
+    pub min_seconds: f64,
+    pub median_seconds: f64,
+    pub max_seconds: f64,
+    /// Column, row, width and height.
+    pub slowest: [u32; 4],
+}
+
+/// What the workers left, looked at: the film is no longer needed.
+#[derive(Debug)]
+pub struct Developed {
+    /// The linear image.
+    pub image: Image,
+    /// Its error; `None` with too few samples.
+    pub error: Option<ErrorRecord>,
+    /// Fewest and most samples of any pixel.
+    pub samples: (u32, u32),
+}
+
+/// Develops a film.
+pub fn develop(film: &Film) -> Developed {
+    Developed { image: film.develop(), error: error_statement::of(film), samples: film.samples() }
+}
+
+/// How the machine was used.
+#[derive(Clone, Copy, Debug)]
+pub struct Work {
+    /// Worker threads.
+    pub threads: usize,
+    /// Side of a tile.
+    pub tile: u32,
+    /// From the start of the process to the first sample.
+    pub setup: Duration,
+}
+
+/// The summary before anything is written; the outcome's film is not looked at.
+pub fn summary(job: &Job, work: Work, outcome: &Outcome, developed: &Developed) -> Summary {
+    let (least, most) = developed.samples;
+    let RayCounts { camera, scattered, shadow } = outcome.rays;
+    let idle = outcome.timing.idle();
+    Summary {
+        version: env!("CARGO_PKG_VERSION"),
+        scene: job.path.display().to_string(),
+        scene_hash: job.scene_hash.clone(),
+        settings: record::settings(job),
+        samples_least: least,
+        samples_most: most,
+        rounds: least / ROUND,
+        threads: work.threads,
+        simd: job.level.name(),
+        tile: work.tile,
+        setup_seconds: work.setup.as_secs_f64(),
+        photon_seconds: 0.0,
+        render_seconds: outcome.timing.elapsed.as_secs_f64(),
+        write_seconds: 0.0,
+        wall_seconds: 0.0,
+        samples: outcome.samples,
+        rays: RayRecord { camera, scattered, shadow },
+        mean_path_length: (camera > 0).then(|| (camera + scattered) as f64 / camera as f64),
+        photons_emitted: 0,
+        photons_stored: 0,
+        peak_bytes: None,
+        hash: smalti_image::hash(&developed.image),
+        nonfinite: outcome.rejected.count,
+        nonfinite_samples: outcome.rejected.first.iter().map(|rejected| rejected_record(job, rejected)).collect(),
+        capped_paths: outcome.capped,
+        mean: developed.image.mean(),
+        error: developed.error,
+        biases: biases(&job.settings, outcome.capped),
+        tiles: tiles(&outcome.timing),
+        idle: idle.iter().sum::<f64>() / idle.len().max(1) as f64,
+        stopped_by: if outcome.interrupted { "interrupt" } else { "spp" },
+        target_reached: least >= job.settings.spp,
+        outputs: Vec::new(),
+        reproduce: (least == most).then(|| reproduce::command(&job.path, &job.settings, least, job.camera())),
+    }
+}
+
+fn rejected_record(job: &Job, rejected: &Rejected) -> RejectedRecord {
+    let &Rejected { pixel, sample } = rejected;
+    let replay = reproduce::replay_command(&job.path, &job.settings, job.camera(), pixel, sample);
+    RejectedRecord { pixel: [pixel.0, pixel.1], sample, replay }
+}
+
+fn tiles(timing: &Timing) -> Option<TilesRecord> {
+    let balance = timing.balance()?;
+    let Rect { x, y, width, height } = balance.slowest;
+    Some(TilesRecord {
+        count: timing.tiles.len(),
+        min_seconds: balance.min.as_secs_f64(),
+        median_seconds: balance.median.as_secs_f64(),
+        max_seconds: balance.max.as_secs_f64(),
+        slowest: [x, y, width, height],
+    })
+}
+
+/// What more samples would not mend.
+fn biases(settings: &Settings, capped: u64) -> Vec<String> {
+    let mut biases = Vec::new();
+    if settings.integrator == Integrator::Whitted {
+        let least = 1.0 / LEAST_CONTRIBUTION;
+        biases.push("whitted: no indirect diffuse light and no ambient term".into());
+        biases.push(format!("whitted: branches that count for less than 1/{least} are not followed"));
+    }
+    if let Some(bounces) = settings.max_bounces {
+        biases.push(format!("max_bounces: light that scatters more than {bounces} times is missing"));
+    }
+    if settings.fresnel == Fresnel::Schlick {
+        biases.push("schlick: dielectrics reflect by an approximation".into());
+    }
+    if !settings.jitter {
+        biases.push("no jitter: a pixel shows its centre, not its area".into());
+    }
+    if capped > 0 {
+        biases.push(format!("cap: {capped} paths were ended by the hard cap on bounces"));
+    }
+    biases
+}

@@ -1,0 +1,46 @@
+# What is done with this repository again and again. Nothing here is needed to build it or to render.
+
+smalti := "cargo run --release --quiet --package smalti --"
+room := "scenes/hexroom.toml"
+
+# List the recipes
+[private]
+default:
+    @just --list --unsorted
+
+# Formatting, lints and documentation, as strict as CI
+check:
+    cargo fmt --all --check
+    cargo clippy --workspace --all-targets -- -D warnings
+    RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --quiet
+
+# Every test, or those that ARGS name
+test *ARGS:
+    cargo test --workspace {{ARGS}}
+
+# Render a scene; the picture lies here under the scene's name
+render SCENE=room *FLAGS:
+    {{smalti}} render {{SCENE}} {{FLAGS}}
+
+# What a scene requires, and why
+explain SCENE=room *FLAGS:
+    {{smalti}} explain {{SCENE}} {{FLAGS}}
+
+# How far an image is from a reference
+compare IMAGE REFERENCE *FLAGS:
+    {{smalti}} compare {{IMAGE}} {{REFERENCE}} {{FLAGS}}
+
+# The renders of the report's Table 1, into out/report
+report:
+    mkdir -p out/report
+    {{smalti}} render {{room}} --size 800x800 --spp 5 --shadow-rays 10 -o out/report/comparison.png
+    {{smalti}} render {{room}} --size 400x400 --spp 5 --shadow-rays 10 -o out/report/figure1.png
+    {{smalti}} render {{room}} --size 800x800 --spp 1 --shadow-rays 10 -o out/report/figure2.png
+    {{smalti}} render {{room}} --size 800x800 --spp 5 --shadow-rays 10 --no-jitter -o out/report/figure3.png
+    {{smalti}} render {{room}} --size 800x800 --spp 5 --shadow-rays 5 -o out/report/figure4.png
+    {{smalti}} render {{room}} --size 800x800 --spp 30 --shadow-rays 20 -o out/report/figure5.png
+
+# Take what the program says now as what the tests expect; look at the difference before it is committed
+bless:
+    SMALTI_BLESS=1 cargo test --package smalti-scene --test bad
+    git diff --stat
