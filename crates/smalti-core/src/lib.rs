@@ -6,6 +6,7 @@ pub mod film;
 pub mod geometry;
 pub mod lanes;
 pub mod light;
+mod mutant;
 pub mod plan;
 pub mod render;
 mod replay;

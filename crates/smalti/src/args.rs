@@ -55,8 +55,6 @@ pub struct RenderArgs {
     /// Image file: .png, .exr, .pfm or .hdr; may be repeated [default: the scene's name with .png, here]
     #[arg(short, long = "output", value_name = "FILE")]
     pub outputs: Vec<PathBuf>,
-    #[command(flatten)]
-    pub image: ImageArgs,
     /// Brightness of PNG files in stops: every step doubles it; other formats hold linear radiance
     #[arg(long, value_name = "EV", value_parser = parse_finite, allow_negative_numbers = true)]
     pub exposure: Option<f64>,
@@ -77,6 +75,8 @@ pub struct RenderArgs {
     /// Print the summary as one JSON object on stdout
     #[arg(long)]
     pub json: bool,
+    #[command(flatten)]
+    pub image: ImageArgs,
 }
 
 /// More threads than any machine has; a number above is a slip.
@@ -93,7 +93,8 @@ Examples:
 Flags override the scene's [render] table. Threads, tile size and SIMD level change no bit of the image.
 Ctrl-C keeps the picture so far; twice leaves at once.";
 
-/// Flags that change the image; each overrides its key in the scene's `[render]` table.
+/// Flags that change the image; each overrides its key in the scene's `[render]` table. They stand last in every
+/// command, for their heading holds for all that follows.
 #[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = "Image")]
 pub struct ImageArgs {
@@ -156,12 +157,12 @@ pub struct ExplainArgs {
     /// Scene file (TOML)
     pub scene: PathBuf,
     #[command(flatten)]
-    pub image: ImageArgs,
-    #[command(flatten)]
     pub simd: SimdArgs,
     /// Print one JSON object on stdout
     #[arg(long)]
     pub json: bool,
+    #[command(flatten)]
+    pub image: ImageArgs,
 }
 
 /// Arguments of `smalti scaling`.
@@ -177,8 +178,6 @@ pub struct ScalingArgs {
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..))]
     pub reps: u32,
     #[command(flatten)]
-    pub image: ImageArgs,
-    #[command(flatten)]
     pub work: WorkArgs,
     /// No line for each run on stderr
     #[arg(short, long)]
@@ -186,6 +185,8 @@ pub struct ScalingArgs {
     /// Print one JSON object on stdout
     #[arg(long)]
     pub json: bool,
+    #[command(flatten)]
+    pub image: ImageArgs,
 }
 
 /// Numbers of threads as typed; 0 stands for `max`. (A type of its own, or clap takes a vector for repeated flags.)
@@ -234,12 +235,12 @@ pub struct PixelArgs {
     #[arg(long, value_name = "N")]
     pub sample: Option<u32>,
     #[command(flatten)]
-    pub image: ImageArgs,
-    #[command(flatten)]
     pub simd: SimdArgs,
     /// Print one JSON object on stdout
     #[arg(long)]
     pub json: bool,
+    #[command(flatten)]
+    pub image: ImageArgs,
 }
 
 /// When to use colours.

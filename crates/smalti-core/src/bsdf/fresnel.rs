@@ -2,6 +2,7 @@
 //! approximation (report eq. 7 and 8, with R₀ squared and the cosine taken on the thinner side).
 
 use crate::lanes::Lanes;
+use crate::mutant::mutant;
 use crate::settings::Fresnel;
 
 /// A ray at a boundary.
@@ -24,7 +25,8 @@ pub fn boundary<L: Lanes>(l: L, [n, inverse, excess]: [L::F; 3], outside: L::M, 
     let one = l.f(1.0);
     let c = l.max(l.min(cosine, one), l.f(0.0));
     // g² = (m − 1)(m + 1) + c² with m = n_t / n_i; inside, m = 1/n and (m − 1)(m + 1) = −(n − 1)(n + 1) / n².
-    let eta = l.select(outside, inverse, n);
+    // Report eq. 4 to 6: R = n₁/n₂ "from air to glass" at every hit, also when leaving.
+    let eta = if mutant!("eq6_ratio_not_inverted") { inverse } else { l.select(outside, inverse, n) };
     let step = l.select(outside, excess, -(excess * inverse * inverse));
     let g_squared = l.mul_add(c, c, step);
     let g = l.sqrt(l.max(g_squared, l.f(0.0)));
@@ -35,9 +37,12 @@ pub fn boundary<L: Lanes>(l: L, [n, inverse, excess]: [L::F; 3], outside: L::M, 
 #[inline(always)]
 pub fn reflectance<L: Lanes>(l: L, kind: Fresnel, at: &Boundary<L>) -> L::F {
     let one = l.f(1.0);
-    let passes = l.lt(l.f(0.0), at.g_squared);
+    // Report eq. 10 left out: no total reflection.
+    let passes = l.lt(l.f(0.0), at.g_squared) | l.m(mutant!("eq10_no_total_reflection"));
     let partial = match kind {
         Fresnel::Exact => exact(l, at.cosine, l.sqrt(l.max(at.g_squared, l.f(0.0)))),
+        // Report eq. 8: the same cosine both ways.
+        Fresnel::Schlick if mutant!("eq8_inner_cosine") => schlick(l, at.eta, at.cosine),
         Fresnel::Schlick => schlick(l, at.eta, l.select(at.denser, at.cosine, at.cosine_refracted)),
     };
     l.select(passes, l.min(partial, one), one)
@@ -58,7 +63,8 @@ fn exact<L: Lanes>(l: L, c: L::F, g: L::F) -> L::F {
 fn schlick<L: Lanes>(l: L, eta: L::F, cosine: L::F) -> L::F {
     let one = l.f(1.0);
     let root = (one - eta) / (one + eta);
-    let r0 = root * root;
+    // Report eq. 7: not squared.
+    let r0 = if mutant!("eq7_not_squared") { root } else { root * root };
     let m = one - cosine;
     let squared = m * m;
     l.mul_add(one - r0, squared * squared * m, r0)

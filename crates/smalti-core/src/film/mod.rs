@@ -28,20 +28,24 @@ pub struct Pixel {
 impl Pixel {
     /// Adds sample number `index` (from 0) of this pixel.
     pub fn add(&mut self, index: u32, radiance: [f32; 3]) {
-        let done = f64::from(index / ROUND);
-        let completes = (index + 1).is_multiple_of(ROUND);
+        for (channel, value) in radiance.into_iter().enumerate() {
+            self.sum[channel] += f64::from(value);
+            self.round[channel] += f64::from(value);
+        }
+        if (index + 1).is_multiple_of(ROUND) {
+            self.complete_round(f64::from(index / ROUND));
+        }
+    }
+
+    /// Takes the current round, which `before` others preceded, into the spread (Welford's update).
+    fn complete_round(&mut self, before: f64) {
+        let size = f64::from(ROUND);
         for channel in 0..3 {
-            let value = f64::from(radiance[channel]);
-            self.sum[channel] += value;
-            self.round[channel] += value;
-            if completes {
-                let round = f64::from(ROUND);
-                let mean = self.sum[channel] / (round * (done + 1.0));
-                let before = if done > 0.0 { (self.sum[channel] - self.round[channel]) / (round * done) } else { mean };
-                let of_round = self.round[channel] / round;
-                self.m2[channel] += (of_round - before) * (of_round - mean);
-                self.round[channel] = 0.0;
-            }
+            let (sum, round) = (self.sum[channel], self.round[channel]);
+            let mean = sum / (size * (before + 1.0));
+            let mean_before = if before > 0.0 { (sum - round) / (size * before) } else { mean };
+            self.m2[channel] += (round / size - mean_before) * (round / size - mean);
+            self.round[channel] = 0.0;
         }
     }
 
@@ -156,5 +160,59 @@ impl Film {
                 visit(start + column, pixel);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn filled(samples: u32, value: impl Fn(u32) -> f32) -> Pixel {
+        let mut pixel = Pixel::default();
+        (0..samples).for_each(|s| pixel.add(s, [value(s), 2.0 * value(s), 0.0]));
+        pixel
+    }
+
+    #[test]
+    fn a_pixel_takes_72_bytes() {
+        assert_eq!(size_of::<Pixel>(), 72);
+    }
+
+    #[test]
+    fn variance_is_that_of_the_round_means() {
+        // Rounds of constant value 1, 2, 4, 9: mean 4, sample variance 38/3, of the mean 38/12.
+        let values = [1.0, 2.0, 4.0, 9.0];
+        let pixel = filled(4 * ROUND, |s| values[(s / ROUND) as usize]);
+        let variance = pixel.variance_of_mean(4 * ROUND).unwrap();
+        assert!((variance[0] - 38.0 / 12.0).abs() < 1e-12 && (variance[1] - 4.0 * 38.0 / 12.0).abs() < 1e-11);
+        assert_eq!((variance[2], pixel.mean(4 * ROUND)[0]), (0.0, 4.0));
+    }
+
+    #[test]
+    fn samples_of_an_unfinished_round_count_for_the_mean_only() {
+        let pixel = filled(2 * ROUND + 4, |s| if s < ROUND { 1.0 } else { 3.0 });
+        let samples = 2 * ROUND + 4;
+        assert!((pixel.mean(samples)[0] - (16.0 + 60.0) / 36.0).abs() < 1e-12);
+        // Variance of the mean of two rounds (1 and 3) is 1; scaled from 32 to 36 samples.
+        assert!((pixel.variance_of_mean(samples).unwrap()[0] - 32.0 / 36.0).abs() < 1e-12);
+        assert_eq!(pixel.variance_of_mean(2 * ROUND - 1), None);
+    }
+
+    #[test]
+    fn sums_stay_exact_where_f32_would_stop_counting() {
+        let mut pixel = Pixel::default();
+        pixel.sum[0] = 16_777_216.0;
+        pixel.add(3, [1.0, 0.0, 0.0]);
+        assert_eq!(pixel.sum[0], 16_777_217.0);
+    }
+
+    #[test]
+    fn tiles_cover_the_area_once() {
+        let film = Film::new(Rect { x: 3, y: 5, width: 33, height: 17 }, 8);
+        let mut seen = vec![0; 33 * 17];
+        for tile in &film.tiles {
+            film.for_each(tile, |index, _| seen[index] += 1);
+        }
+        assert!(seen.iter().all(|count| *count == 1));
     }
 }

@@ -1,6 +1,7 @@
 //! Leaving a surface without hitting it again.
 
 use crate::lanes::{Lanes, V3};
+use crate::mutant::mutant;
 
 /// Bound on the error of a refined hit point along its normal, relative to the largest coordinate: 2⁻²⁴ times about
 /// twice the γ(7) of pbrt's analysis, plus the neighbour's share.
@@ -9,7 +10,8 @@ const ERROR: f32 = 24.0 / 16_777_216.0;
 /// The point from where rays leave to the side of `normal`: moved out by the bound on its error.
 #[inline(always)]
 pub fn leave<L: Lanes>(l: L, point: V3<L>, normal: V3<L>) -> V3<L> {
-    point.along(l, point.max_abs(l) * l.f(ERROR), normal)
+    let error = if mutant!("any_positive_distance") { 0.0 } else { ERROR };
+    point.along(l, point.max_abs(l) * l.f(error), normal)
 }
 
 /// A hit at distance `t` of a ray, moved onto the plane n·x = d that it hit.

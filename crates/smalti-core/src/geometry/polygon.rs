@@ -2,6 +2,7 @@
 
 use super::Ray;
 use crate::lanes::{Lanes, V3};
+use crate::mutant::mutant;
 
 /// Below this |cosine| (relative to the direction's largest component) a ray grazes and the distance is clamped to the
 /// face's box.
@@ -12,7 +13,9 @@ const GRAZING: f32 = 1.0 / 128.0;
 #[inline(always)]
 pub fn distance<L: Lanes>(l: L, ray: &Ray<L>, normal: V3<L>, offset: L::F) -> (L::F, L::M) {
     let cosine = normal.dot(l, ray.direction);
-    let height = offset - normal.dot(l, ray.origin);
+    // Report eq. 16: (Q·E1) in place of (Q·E2) makes every distance 0.
+    let along = if mutant!("eq16_distance_zero") { l.f(0.0) } else { l.f(1.0) };
+    let height = (offset - normal.dot(l, ray.origin)) * along;
     (height / cosine, l.lt(l.abs(cosine), ray.major * l.f(GRAZING)))
 }
 

@@ -3,6 +3,7 @@
 
 use super::Ray;
 use crate::lanes::{Lanes, V3};
+use crate::mutant::mutant;
 
 /// Smallest distance > 0 at which the ray meets the sphere, in units of its direction; +∞ where it does not.
 ///
@@ -17,7 +18,11 @@ pub fn hit<L: Lanes>(l: L, ray: &Ray<L>, centre: V3<L>, radius: L::F, leaves_it:
     let b = -f.dot(l, d);
     let zero = l.f(0.0);
     let closest = f.along(l, b / a, d);
-    let discriminant = l.mul_add(radius, radius, -closest.dot(l, closest));
+    let mut discriminant = l.mul_add(radius, radius, -closest.dot(l, closest));
+    // Report eq. 20: the textbook discriminant b² − a c, which cancels far away.
+    if mutant!("eq20_textbook_quadratic") {
+        discriminant = (b * b - a * (f.dot(l, f) - radius * radius)) / a;
+    }
     let meets = l.lt(zero, discriminant);
     if !l.any(meets | leaves_it) {
         return never;
@@ -27,8 +32,12 @@ pub fn hit<L: Lanes>(l: L, ray: &Ray<L>, centre: V3<L>, radius: L::F, leaves_it:
     let c = f.dot(l, f) - radius * radius;
     let (t0, t1) = (c / q, q / a);
     let (near, far) = (l.min(t0, t1), l.max(t0, t1));
-    let first = l.select(l.lt(zero, near), near, far);
+    // Report §2.13: "choose the smaller t", also where it lies behind.
+    let first = if mutant!("smaller_root") { near } else { l.select(l.lt(zero, near), near, far) };
+    let leaves_it = if mutant!("smaller_root") { l.m(false) } else { leaves_it };
     let other = (b + b) / a;
+    // Report §2.12: any t > 0 will do.
+    let leaves_it = leaves_it & l.m(!mutant!("any_positive_distance"));
     let t = l.select(leaves_it, other, l.select(meets, first, never));
     l.select(l.lt(zero, t), t, never)
 }

@@ -71,7 +71,7 @@ pub trait Lanes: Copy {
     /// The bits of `x`.
     fn bits(self, x: Self::F) -> Self::U;
     /// The f32 with these bits.
-    fn from_bits(self, x: Self::U) -> Self::F;
+    fn reinterpret(self, x: Self::U) -> Self::F;
     /// `x` as f32; exact for `x` < 2²⁴, `x` < 2³¹ required.
     fn to_f(self, x: Self::U) -> Self::F;
 
@@ -141,7 +141,7 @@ pub trait Lanes: Copy {
     #[inline(always)]
     fn copysign(self, magnitude: Self::F, sign: Self::F) -> Self::F {
         let top = self.u(0x8000_0000);
-        self.from_bits((self.bits(magnitude) & !top) | (self.bits(sign) & top))
+        self.reinterpret((self.bits(magnitude) & !top) | (self.bits(sign) & top))
     }
     /// `x` where `mask`, else +0.
     #[inline(always)]

@@ -68,7 +68,7 @@ impl Lanes for One {
         x.to_bits()
     }
     #[inline(always)]
-    fn from_bits(self, x: u32) -> f32 {
+    fn reinterpret(self, x: u32) -> f32 {
         f32::from_bits(x)
     }
     #[inline(always)]

@@ -96,7 +96,7 @@ macro_rules! lanes {
                 x.bitcast()
             }
             #[inline(always)]
-            fn from_bits(self, x: Self::U) -> Self::F {
+            fn reinterpret(self, x: Self::U) -> Self::F {
                 x.bitcast()
             }
             #[inline(always)]
@@ -110,7 +110,7 @@ macro_rules! lanes {
             }
             #[inline(always)]
             fn abs(self, x: Self::F) -> Self::F {
-                self.from_bits(self.bits(x) & self.u(0x7fff_ffff))
+                self.reinterpret(self.bits(x) & self.u(0x7fff_ffff))
             }
             #[inline(always)]
             fn lt(self, a: Self::F, b: Self::F) -> Self::M {

@@ -2,6 +2,7 @@
 
 use super::table::{Kind, LightTable, NO_SURFACE, triple};
 use crate::lanes::{Lanes, Rgb, V3};
+use crate::mutant::mutant;
 use crate::sampling::warp;
 
 /// What arrives at a point from one sampled point of a light, were nothing in the way.
@@ -99,9 +100,15 @@ fn patch<L: Lanes>(l: L, place: &[L::F; 16], surface: L::U, x: V3<L>, (u, v): (L
     let reach = on_light - x;
     let squared = reach.dot(l, reach);
     let length = l.sqrt(squared);
-    let facing = -triple(place, 9).dot(l, reach);
+    let mut facing = -triple(place, 9).dot(l, reach);
+    // Report eq. 13: +N·d, its sign mended by taking the magnitude, so that the back shines too.
+    if mutant!("eq13_two_sided") {
+        facing = l.abs(facing);
+    }
     let front = l.lt(l.f(0.0), facing);
     let zero = V3::splat(l, [0.0; 3]);
+    // Report eq. 13 read without the square of the distance.
+    let squared = if mutant!("eq13_distance_not_squared") { length } else { squared };
     Incident {
         reach,
         wi: reach.scale(l.f(1.0) / length),

@@ -62,8 +62,8 @@ mod tests {
 
     #[test]
     fn second_dimension_is_sobols() {
-        // The first points of Sobol's second dimension: 0, 1/2, 3/4, 1/4, 3/8, 7/8, 5/8, 1/8.
+        // The first points of Sobol's second dimension: 0, 1/2, 3/4, 1/4, 5/8, 1/8, 3/8, 7/8.
         let points: Vec<u32> = (0..8).map(|n| second_dimension_reversed(One, n).reverse_bits() >> 29).collect();
-        assert_eq!(points, [0, 4, 6, 2, 3, 7, 5, 1]);
+        assert_eq!(points, [0, 4, 6, 2, 5, 1, 3, 7]);
     }
 }

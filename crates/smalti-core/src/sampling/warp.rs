@@ -4,6 +4,7 @@ use core::f32::consts::{FRAC_1_PI, FRAC_PI_4, PI};
 
 use crate::lanes::math::{sin_cos_quarter, sin_cos_turn};
 use crate::lanes::{Lanes, V3};
+use crate::mutant::mutant;
 
 /// A point of the unit disc, concentric (Shirley and Chiu 1997): areas and neighbourhoods are kept.
 #[inline(always)]
@@ -23,7 +24,15 @@ pub fn disc<L: Lanes>(l: L, u: L::F, v: L::F) -> (L::F, L::F) {
 /// Corrects the report's eq. 12, which draws azimuth and inclination from one number.
 #[inline(always)]
 pub fn cosine_hemisphere<L: Lanes>(l: L, u: L::F, v: L::F) -> V3<L> {
+    // Report eq. 12: azimuth and inclination from one number.
+    let v = if mutant!("eq12_one_number") { u } else { v };
     let (x, y) = disc(l, u, v);
+    // Report eq. 11 with directions that are not cosine-distributed: uniform, but weighed as if they were.
+    if mutant!("eq11_uniform_directions") {
+        let z = l.f(1.0) - (x * x + y * y);
+        let stretch = l.sqrt(l.f(1.0) + z);
+        return V3::new(x * stretch, y * stretch, z);
+    }
     // 1 - x² - y² is at least about 1e-7 for numbers below 1; the floor keeps the pdf away from 0.
     let z = l.sqrt(l.max(l.mul_add(-x, x, l.mul_add(-y, y, l.f(1.0))), l.f(6e-8)));
     V3::new(x, y, z)

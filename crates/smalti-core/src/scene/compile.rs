@@ -84,7 +84,8 @@ impl Compiler<'_> {
             let centre = self.scene.frame.point(sphere.centre);
             let radius = (sphere.radius * self.scene.frame.scale) as f32;
             let geometry = [centre.x as f32, centre.y as f32, centre.z as f32, radius];
-            if !(radius > 0.0) {
+            // Smaller than the smallest f32 in the frame: below 1e-38 of the scene.
+            if radius <= 0.0 {
                 self.scene.dropped += 1;
                 continue;
             }

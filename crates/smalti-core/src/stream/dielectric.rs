@@ -4,6 +4,7 @@ use super::{DIRECTION, Scattered, Stream, THROUGHPUT, mirror, surface};
 use crate::bsdf::fresnel::{Boundary, boundary, reflectance};
 use crate::geometry::offset;
 use crate::lanes::{Lanes, V3};
+use crate::mutant::mutant;
 use crate::sampling::{Purpose, pair};
 use crate::scene::Scene;
 use crate::settings::{Fresnel, SamplerKind};
@@ -72,17 +73,21 @@ impl<L: Lanes> Crossing<L> {
         let incoming = hits.v3(l, DIRECTION, at);
         let eta = self.boundary.eta;
         let bend = l.mul_add(eta, self.boundary.cosine, -self.boundary.cosine_refracted);
-        let refracted = incoming.scale(eta).along(l, bend, self.side).normalised(l);
+        // Report eq. 5 as printed serves only rays that enter: on the way out the normal has to be turned.
+        let side = if mutant!("eq5_normal_not_turned") { self.hit.normal } else { self.side };
+        let refracted = incoming.scale(eta).along(l, bend, side).normalised(l);
         let direction = V3::select(l, reflects, mirror::reflect(l, incoming, self.side), refracted);
         let leaves_on = V3::select(l, reflects, self.side, -self.side);
         let so_far = hits.eta(l, at);
+        // Report eq. 9: 1 − R "is the radiance", without the n² of the narrower solid angle.
+        let squeezed = if mutant!("eq9_no_n_squared") { so_far } else { so_far * eta * eta };
         Scattered {
             origin: offset::leave(l, self.hit.point, leaves_on),
             direction,
             throughput,
             leaves: self.hit.surface,
             pdf: l.f(0.0),
-            eta: l.select(reflects, so_far, so_far * eta * eta),
+            eta: l.select(reflects, so_far, squeezed),
         }
     }
 }

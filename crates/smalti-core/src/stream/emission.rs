@@ -7,6 +7,7 @@
 use super::{DIRECTION, DISTANCE, ORIGIN, PRIM, SLOT, Slots, Stream, THROUGHPUT};
 use crate::lanes::{Lanes, V3};
 use crate::light::sample::pdf_of_hit;
+use crate::mutant::mutant;
 use crate::scene::{Class, Scene};
 
 /// Adds what the emitters of this stream send back along their rays.
@@ -28,7 +29,12 @@ pub fn run<L: Lanes>(l: L, scene: &Scene, shadow_rays: u32, hits: &Stream, slots
         let by_scatter = hits.pdf(l, at);
         let by_light = pdf_of_hit(l, &emitter, &[x, y, z, w], is_sphere, (origin, wi, t));
         let balanced = by_scatter / l.mul_add(l.f(shadow_rays as f32), by_light, by_scatter);
-        let weight = l.select(l.lt(l.f(0.0), by_scatter), balanced, l.f(1.0));
+        let scattered = l.lt(l.f(0.0), by_scatter);
+        // Report §2.5 and 2.7 together: light by shadow rays and again when it is hit.
+        let balanced = if mutant!("emission_counted_twice") { l.f(1.0) } else { balanced };
+        // Report §2.7: light by shadow rays alone, so that specular chains never meet a lamp.
+        let whole = if mutant!("no_light_after_specular") { l.f(0.0) } else { l.f(1.0) };
+        let weight = l.select(scattered, balanced, whole);
 
         let radiance = V3::new(emitter[0], emitter[1], emitter[2]).scale(weight * hits.eta(l, at));
         slots.add(l, active & front, hits.u(l, SLOT, at), hits.v3(l, THROUGHPUT, at) * radiance);

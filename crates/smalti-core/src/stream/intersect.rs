@@ -4,11 +4,14 @@ use super::{DIRECTION, DISTANCE, LEAVES, ORIGIN, PRIM, Stream};
 use crate::accel::{Accel, Tracer};
 use crate::geometry::Ray;
 use crate::lanes::Lanes;
+use crate::light::table::NO_SURFACE;
+use crate::mutant::mutant;
 
 /// The ray of every lane of a packet.
 #[inline(always)]
 pub fn ray<L: Lanes>(l: L, rays: &Stream, at: usize) -> Ray<L> {
-    Ray::new(l, rays.v3(l, ORIGIN, at), rays.v3(l, DIRECTION, at), rays.u(l, LEAVES, at))
+    let leaves = if mutant!("any_positive_distance") { l.u(NO_SURFACE) } else { rays.u(l, LEAVES, at) };
+    Ray::new(l, rays.v3(l, ORIGIN, at), rays.v3(l, DIRECTION, at), leaves)
 }
 
 /// Writes distance and primitive of every ray's nearest hit.

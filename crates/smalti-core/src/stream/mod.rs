@@ -142,7 +142,7 @@ impl Stream {
     /// A packet of a column as f32.
     #[inline(always)]
     pub fn f<L: Lanes>(&self, l: L, column: usize, at: usize) -> L::F {
-        l.from_bits(self.u(l, column, at))
+        l.reinterpret(self.u(l, column, at))
     }
 
     /// A packet of three columns.

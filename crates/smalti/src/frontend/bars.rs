@@ -45,26 +45,14 @@ impl Bars<Screen> {
 
 impl<S: Surface> Bars<S> {
     fn new(title: Title, palette: Palette, surface: S) -> Self {
-        let look = Look {
-            palette,
-            exposure: title.exposure,
-        };
-        Self {
-            title,
-            look,
-            picture: None,
-            surface,
-            drawn: None,
-        }
+        let look = Look { palette, exposure: title.exposure };
+        Self { title, look, picture: None, surface, drawn: None }
     }
 
     /// The size of the surface now.
     fn measure(&self) -> Size {
         self.surface.measure();
-        (
-            usize::from(self.surface.width()),
-            usize::from(self.surface.height()),
-        )
+        (usize::from(self.surface.width()), usize::from(self.surface.height()))
     }
 
     /// The bar of a frame of that shape. Where the last frame had another, it is wiped and a new bar is begun.
@@ -78,10 +66,7 @@ impl<S: Surface> Bars<S> {
         let place = MultiProgress::with_draw_target(target);
         // Lines are overwritten, not cleared first: a terminal without synchronised output does not flicker.
         place.set_move_cursor(true);
-        let bar = place.add(ProgressBar::with_draw_target(
-            Some(total),
-            ProgressDrawTarget::hidden(),
-        ));
+        let bar = place.add(ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::hidden()));
         Drawn { place, bar, shape }
     }
 
@@ -95,17 +80,11 @@ impl<S: Surface> Bars<S> {
 
     fn draw(&mut self, tally: &Tally) {
         let size = self.measure();
-        let Frame { above, text, below } =
-            frame::live(&self.title, tally, self.picture.as_ref(), self.look, size);
+        let Frame { above, text, below } = frame::live(&self.title, tally, self.picture.as_ref(), self.look, size);
         let style = style(!above.is_empty(), below, self.look.palette);
         let lines = above.len() + if below { 2 } else { 1 };
         let drawn = self.bar(Shape { size, lines }, tally.total);
-        let bar = drawn
-            .bar
-            .clone()
-            .with_style(style)
-            .with_prefix(above.join("\n"))
-            .with_message(text);
+        let bar = drawn.bar.clone().with_style(style).with_prefix(above.join("\n")).with_message(text);
         bar.with_position(tally.done).tick();
         self.drawn = Some(drawn);
     }
@@ -128,14 +107,7 @@ impl<S: Surface> View for Bars<S> {
     fn hear(&mut self, event: &Event, _: &Tally) {
         match (event, &mut self.picture) {
             (Event::Started { area, .. }, _) => self.picture = Some(Picture::new(*area)),
-            (
-                Event::TileFinished {
-                    area,
-                    pixels: Some(pixels),
-                    ..
-                },
-                Some(picture),
-            ) => picture.put(*area, pixels),
+            (Event::TileFinished { area, pixels: Some(pixels), .. }, Some(picture)) => picture.put(*area, pixels),
             _ => {}
         }
     }
@@ -160,14 +132,9 @@ fn broken_anew(lines: usize, from: usize, to: usize) -> usize {
 /// Where text and bar stand.
 fn style(above: bool, below: bool, palette: Palette) -> ProgressStyle {
     let head = if above { "{prefix}\n" } else { "" };
-    let bar = if palette == Palette::Mono {
-        "{wide_bar}"
-    } else {
-        "\x1b[36m{wide_bar}\x1b[0m"
-    };
+    let bar = if palette == Palette::Mono { "{wide_bar}" } else { "\x1b[36m{wide_bar}\x1b[0m" };
     let tail = if below { "\n{msg}" } else { " {msg}" };
-    let style =
-        ProgressStyle::with_template(&[head, bar, tail].concat()).expect("a fixed template");
+    let style = ProgressStyle::with_template(&[head, bar, tail].concat()).expect("a fixed template");
     style.progress_chars("█▉▊▋▌▍▎▏ ")
 }
 
@@ -181,18 +148,11 @@ mod tests {
     impl Surface for InMemoryTerm {}
 
     /// Hears the first pass and draws `frames` frames half-way.
-    fn drawn(
-        size: (u16, u16),
-        workers: usize,
-        palette: Palette,
-        frames: usize,
-    ) -> (Bars<InMemoryTerm>, Tally) {
+    fn drawn(size: (u16, u16), workers: usize, palette: Palette, frames: usize) -> (Bars<InMemoryTerm>, Tally) {
         let mut bars = Bars::new(fixture::title(), palette, InMemoryTerm::new(size.1, size.0));
         let tally = fixture::half_way(workers);
         bars.tick(&Tally::default());
-        fixture::first_pass(workers)
-            .iter()
-            .for_each(|fact| bars.hear(fact, &tally));
+        fixture::first_pass(workers).iter().for_each(|fact| bars.hear(fact, &tally));
         (0..frames).for_each(|_| bars.tick(&tally));
         (bars, tally)
     }
@@ -200,25 +160,12 @@ mod tests {
     #[test]
     fn frames_are_drawn_in_the_same_place_at_every_size() {
         for palette in [Palette::Mono, Palette::Indexed, Palette::True] {
-            for size in [
-                (20, 5),
-                (20, 24),
-                (40, 3),
-                (40, 10),
-                (59, 24),
-                (60, 24),
-                (80, 24),
-                (200, 50),
-                (7, 2),
-                (2, 1),
-            ] {
+            for size in [(20, 5), (20, 24), (40, 3), (40, 10), (59, 24), (60, 24), (80, 24), (200, 50), (7, 2), (2, 1)]
+            {
                 let once = drawn(size, 9, palette, 1).0.surface.contents();
                 let often = drawn(size, 9, palette, 4).0.surface.contents();
                 assert_eq!(once, often, "{size:?}");
-                assert!(
-                    once.lines().count() <= usize::from(size.1 - 1).max(1),
-                    "{size:?}\n{once}"
-                );
+                assert!(once.lines().count() <= usize::from(size.1 - 1).max(1), "{size:?}\n{once}");
                 assert!(size.0 < 7 || once.contains("50 %"), "{size:?}\n{once}");
             }
         }
@@ -230,28 +177,16 @@ mod tests {
         let lines: Vec<_> = contents.lines().collect();
         assert!(lines[0].starts_with("scenes/a room"), "{contents}");
         assert_eq!(lines[1].trim(), "#".repeat(38));
-        assert!(
-            lines[20].starts_with("0 ▕██████▌      ▏   45.0 ms"),
-            "{contents}"
-        );
+        assert!(lines[20].starts_with("0 ▕██████▌      ▏   45.0 ms"), "{contents}");
         assert_eq!(lines[21], "1 waiting");
-        assert!(
-            lines[22].starts_with("████") && lines[22].ends_with("20 s left"),
-            "{contents}"
-        );
+        assert!(lines[22].starts_with("████") && lines[22].ends_with("20 s left"), "{contents}");
     }
 
     #[test]
     fn the_picture_is_in_true_colour() {
-        let formatted = drawn((80, 24), 2, Palette::True, 1)
-            .0
-            .surface
-            .contents_formatted();
+        let formatted = drawn((80, 24), 2, Palette::True, 1).0.surface.contents_formatted();
         let formatted = String::from_utf8(formatted).unwrap();
-        assert!(
-            formatted.contains("38;2;188;188;188") && formatted.contains('▀'),
-            "{formatted:?}"
-        );
+        assert!(formatted.contains("38;2;188;188;188") && formatted.contains('▀'), "{formatted:?}");
     }
 
     #[test]
@@ -260,14 +195,8 @@ mod tests {
         tally.hear(&fixture::finished(false));
         bars.end(&tally);
         let contents = bars.surface.contents();
-        assert!(
-            !contents.contains("waiting") && !contents.contains("left"),
-            "{contents}"
-        );
-        assert!(
-            contents.contains("####") && contents.lines().last().unwrap().starts_with("idle"),
-            "{contents}"
-        );
+        assert!(!contents.contains("waiting") && !contents.contains("left"), "{contents}");
+        assert!(contents.contains("####") && contents.lines().last().unwrap().starts_with("idle"), "{contents}");
     }
 
     #[test]
@@ -282,15 +211,9 @@ mod tests {
         let (mut bars, tally) = drawn((80, 24), 9, Palette::Mono, 2);
         let few = fixture::half_way(2);
         bars.tick(&few);
-        assert_eq!(
-            bars.surface.contents(),
-            drawn((80, 24), 2, Palette::Mono, 1).0.surface.contents()
-        );
+        assert_eq!(bars.surface.contents(), drawn((80, 24), 2, Palette::Mono, 1).0.surface.contents());
         bars.tick(&tally);
-        assert_eq!(
-            bars.surface.contents(),
-            drawn((80, 24), 9, Palette::Mono, 1).0.surface.contents()
-        );
+        assert_eq!(bars.surface.contents(), drawn((80, 24), 9, Palette::Mono, 1).0.surface.contents());
     }
 
     #[test]

@@ -12,12 +12,7 @@ use super::Title;
 use super::tally::Tally;
 
 /// The part of the image that is rendered.
-pub const AREA: Rect = Rect {
-    x: 10,
-    y: 20,
-    width: 64,
-    height: 64,
-};
+pub const AREA: Rect = Rect { x: 10, y: 20, width: 64, height: 64 };
 
 /// What is rendered.
 pub fn title() -> Title {
@@ -35,71 +30,33 @@ pub fn title() -> Title {
 
 /// The facts of the first pass: 16 tiles, 10 ms and 100 000 rays each.
 pub fn first_pass(workers: usize) -> Vec<Event> {
-    let tiles: Vec<Rect> = Film::new(AREA, 16)
-        .tiles
-        .iter()
-        .map(|tile| tile.area)
-        .collect();
+    let tiles: Vec<Rect> = Film::new(AREA, 16).tiles.iter().map(|tile| tile.area).collect();
     let finished = |(tile, area): (usize, &Rect)| Event::TileFinished {
         tile,
         area: *area,
         pass: 0,
         worker: tile % workers,
         elapsed: Duration::from_millis(10),
-        rays: RayCounts {
-            camera: 256,
-            scattered: 50_000,
-            shadow: 49_744,
-        },
+        rays: RayCounts { camera: 256, scattered: 50_000, shadow: 49_744 },
         samples: 256,
         rejected: 0,
         pixels: Some(vec![[0.5; 3]; area.pixels()].into()),
     };
     let mut facts: Vec<_> = tiles.iter().enumerate().map(finished).collect();
     let progress = Arc::new(Progress::new(workers, Instant::now()));
-    facts.insert(
-        0,
-        Event::Started {
-            area: AREA,
-            tiles,
-            from: 0,
-            until: 64,
-            samples: 64 * 64 * 64,
-            progress,
-        },
-    );
-    let rejected = Rejected {
-        pixel: (12, 30),
-        sample: 0,
-    };
+    facts.insert(0, Event::Started { area: AREA, tiles, from: 0, until: 64, samples: 64 * 64 * 64, progress });
+    let rejected = Rejected { pixel: (12, 30), sample: 0 };
     facts.push(Event::SampleRejected(rejected));
-    facts.push(Event::PassFinished {
-        pass: 0,
-        samples: 1,
-        elapsed: Duration::from_millis(80),
-        error: Some(0.0213),
-    });
+    facts.push(Event::PassFinished { pass: 0, samples: 1, elapsed: Duration::from_millis(80), error: Some(0.0213) });
     facts
 }
 
 /// The last fact.
 pub fn finished(interrupted: bool) -> Event {
-    let tiles = Film::new(AREA, 16)
-        .tiles
-        .iter()
-        .zip(1..)
-        .map(|(tile, n)| (tile.area, Duration::from_millis(n)))
-        .collect();
+    let tiles =
+        Film::new(AREA, 16).tiles.iter().zip(1..).map(|(tile, n)| (tile.area, Duration::from_millis(n))).collect();
     let workers = vec![Duration::from_millis(990), Duration::from_millis(700)];
-    Event::Finished {
-        interrupted,
-        timing: Timing {
-            elapsed: Duration::from_secs(1),
-            passes: 7,
-            tiles,
-            workers,
-        },
-    }
+    Event::Finished { interrupted, timing: Timing { elapsed: Duration::from_secs(1), passes: 7, tiles, workers } }
 }
 
 /// What is known half-way: at 20 s half of the samples are done, worker 0 has a tile in hand, the others wait.
@@ -113,16 +70,10 @@ pub fn half_way(workers: usize) -> Tally {
     }
     tally.done = tally.total / 2;
     for second in 0..=20 {
-        tally
-            .pace
-            .note(Duration::from_secs(second), tally.done * second / 20);
+        tally.pace.note(Duration::from_secs(second), tally.done * second / 20);
     }
-    tally.workers[0].current = Some(smalti_scheduler::Current {
-        tile: 5,
-        done: 500,
-        total: 1000,
-        elapsed: Duration::from_millis(45),
-    });
+    tally.workers[0].current =
+        Some(smalti_scheduler::Current { tile: 5, done: 500, total: 1000, elapsed: Duration::from_millis(45) });
     tally.elapsed = Duration::from_secs(20);
     tally
 }

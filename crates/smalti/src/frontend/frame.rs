@@ -28,13 +28,7 @@ const WIDE: usize = 60;
 const BAR: usize = 12;
 
 /// The frame while it renders.
-pub fn live(
-    title: &Title,
-    tally: &Tally,
-    picture: Option<&Picture>,
-    look: Look,
-    (columns, lines): Size,
-) -> Frame {
+pub fn live(title: &Title, tally: &Tally, picture: Option<&Picture>, look: Look, (columns, lines): Size) -> Frame {
     // The line below stays free, so that the terminal never scrolls.
     let lines = lines.saturating_sub(1);
     let below = columns < WIDE && lines > 1;
@@ -43,21 +37,9 @@ pub fn live(
     let room = room.saturating_sub(1);
     let workers = workers(tally, columns, room.div_ceil(2));
     let mut above: Vec<String> = heading.into_iter().collect();
-    above.extend(painted(
-        tally,
-        picture,
-        look,
-        (columns, room - workers.len()),
-    ));
+    above.extend(painted(tally, picture, look, (columns, room - workers.len())));
     above.extend(workers);
-    let text = status(
-        tally,
-        if columns < WIDE {
-            columns
-        } else {
-            columns - BAR - 1
-        },
-    );
+    let text = status(tally, if columns < WIDE { columns } else { columns - BAR - 1 });
     Frame { above, text, below }
 }
 
@@ -80,59 +62,26 @@ pub fn last(
 
 /// What is rendered and on what.
 pub fn heading(title: &Title) -> String {
-    let Title {
-        scene,
-        size: (width, height),
-        spp,
-        integrator,
-        threads,
-        level,
-        ..
-    } = title;
-    let scene: String = scene
-        .chars()
-        .map(|c| if c.is_control() { '?' } else { c })
-        .collect();
-    let threads = if *threads == 1 {
-        "1 thread".to_owned()
-    } else {
-        format!("{threads} threads")
-    };
+    let Title { scene, size: (width, height), spp, integrator, threads, level, .. } = title;
+    let scene: String = scene.chars().map(|c| if c.is_control() { '?' } else { c }).collect();
+    let threads = if *threads == 1 { "1 thread".to_owned() } else { format!("{threads} threads") };
     format!("{scene}  {width}x{height}  {spp} spp  {integrator}  {threads}  {level}")
 }
 
-fn painted(
-    tally: &Tally,
-    picture: Option<&Picture>,
-    look: Look,
-    (columns, lines): Size,
-) -> Vec<String> {
-    let fitted = picture
-        .filter(|_| lines > 0)
-        .and_then(|picture| Some((picture, picture.fit(columns, lines)?)));
-    let busy = tally
-        .workers
-        .iter()
-        .filter_map(|worker| worker.current)
-        .filter_map(|current| tally.tiles.get(current.tile));
+fn painted(tally: &Tally, picture: Option<&Picture>, look: Look, (columns, lines): Size) -> Vec<String> {
+    let fitted = picture.filter(|_| lines > 0).and_then(|picture| Some((picture, picture.fit(columns, lines)?)));
+    let busy =
+        tally.workers.iter().filter_map(|worker| worker.current).filter_map(|current| tally.tiles.get(current.tile));
     let busy: Vec<_> = busy.copied().collect();
-    fitted.map_or(Vec::new(), |(picture, size)| {
-        picture.paint(size, look, &busy)
-    })
+    fitted.map_or(Vec::new(), |(picture, size)| picture.paint(size, look, &busy))
 }
 
 /// A line for each worker, `room` lines at most.
 fn workers(tally: &Tally, columns: usize, room: usize) -> Vec<String> {
     let all = tally.workers.len();
-    let shown = if all <= room {
-        all
-    } else {
-        room.saturating_sub(1)
-    };
+    let shown = if all <= room { all } else { room.saturating_sub(1) };
     let lines = tally.workers[..shown].iter().enumerate();
-    let mut lines: Vec<_> = lines
-        .map(|(index, worker)| cut(&line(index, worker, tally, columns), columns))
-        .collect();
+    let mut lines: Vec<_> = lines.map(|(index, worker)| cut(&line(index, worker, tally, columns), columns)).collect();
     if shown < all && room > 0 {
         lines.push(cut(&format!("and {} more workers", all - shown), columns));
     }
@@ -147,9 +96,7 @@ fn line(index: usize, worker: &Worker, tally: &Tally, columns: usize) -> String 
     let bar = numbers::bar(current.done, current.total, (columns / 6).clamp(4, 24));
     let mut line = format!("{index:digits$} ▕{bar}▏");
     let tile = format!("tile {} of {}", current.tile + 1, tally.tiles.len());
-    let rate = worker
-        .rays_per_second
-        .map(|rate| format!("{:>13}", numbers::rays(rate)));
+    let rate = worker.rays_per_second.map(|rate| format!("{:>13}", numbers::rays(rate)));
     let elapsed = format!("{:>8}", numbers::duration(current.elapsed));
     for field in once(elapsed).chain(rate).chain(once(tile)) {
         if measure_text_width(&line) + 2 + field.len() <= columns {
@@ -166,32 +113,15 @@ pub fn status(tally: &Tally, columns: usize) -> String {
         (0, Some(numbers::done(tally.done, tally.total))),
         (5, Some(format!("{} of {} spp", tally.samples, tally.until))),
         (2, Some(numbers::rays(tally.rays_per_second()))),
-        (
-            4,
-            tally
-                .error
-                .map(|(error, spp)| format!("error {} at {spp} spp", numbers::share(error))),
-        ),
-        (
-            3,
-            (tally.rejected > 0).then(|| format!("{} not finite", numbers::count(tally.rejected))),
-        ),
-        (
-            1,
-            remaining.map(|(low, high)| numbers::range(low, high) + " left"),
-        ),
+        (4, tally.error.map(|(error, spp)| format!("error {} at {spp} spp", numbers::share(error)))),
+        (3, (tally.rejected > 0).then(|| format!("{} not finite", numbers::count(tally.rejected)))),
+        (1, remaining.map(|(low, high)| numbers::range(low, high) + " left")),
     ];
     let kept = |rank: usize| {
-        let kept = fields
-            .iter()
-            .filter(|field| field.0 <= rank)
-            .filter_map(|field| field.1.as_deref());
+        let kept = fields.iter().filter(|field| field.0 <= rank).filter_map(|field| field.1.as_deref());
         kept.collect::<Vec<_>>().join("  ")
     };
-    let fitting = (0..fields.len())
-        .rev()
-        .map(kept)
-        .find(|text| text.len() <= columns);
+    let fitting = (0..fields.len()).rev().map(kept).find(|text| text.len() <= columns);
     fitting.unwrap_or_else(|| cut(&kept(0), columns))
 }
 
@@ -206,19 +136,10 @@ mod tests {
     use crate::frontend::fixture::{self, AREA};
     use crate::frontend::terminal::Palette;
 
-    const LOOK: Look = Look {
-        palette: Palette::Mono,
-        exposure: 0.0,
-    };
+    const LOOK: Look = Look { palette: Palette::Mono, exposure: 0.0 };
 
     fn frame(workers: usize, size: Size) -> Frame {
-        live(
-            &fixture::title(),
-            &fixture::half_way(workers),
-            Some(&Picture::new(AREA)),
-            LOOK,
-            size,
-        )
+        live(&fixture::title(), &fixture::half_way(workers), Some(&Picture::new(AREA)), LOOK, size)
     }
 
     #[test]
@@ -228,20 +149,10 @@ mod tests {
                 for lines in [1, 2, 3, 4, 6, 10, 24, 60] {
                     let Frame { above, text, below } = frame(workers, (columns, lines));
                     let height = above.len() + if below { 2 } else { 1 };
-                    assert!(
-                        height <= (lines - 1).max(1),
-                        "{height} lines of {lines}, {columns} columns"
-                    );
-                    let widest = above
-                        .iter()
-                        .map(|line| measure_text_width(line))
-                        .max()
-                        .unwrap_or(0);
+                    assert!(height <= (lines - 1).max(1), "{height} lines of {lines}, {columns} columns");
+                    let widest = above.iter().map(|line| measure_text_width(line)).max().unwrap_or(0);
                     let beside = if below || columns < WIDE { 0 } else { BAR + 1 };
-                    assert!(
-                        widest.max(measure_text_width(&text) + beside) <= columns,
-                        "{columns}: {above:?} {text}"
-                    );
+                    assert!(widest.max(measure_text_width(&text) + beside) <= columns, "{columns}: {above:?} {text}");
                 }
             }
         }
@@ -252,15 +163,9 @@ mod tests {
         let Frame { above, text, below } = frame(2, (100, 40));
         assert!(!below && above[0].starts_with("scenes/a room") && above[0].ends_with("avx2"));
         assert_eq!(above[1], " ".repeat(64));
-        assert_eq!(
-            above[33],
-            "0 ▕████████        ▏   45.0 ms   10.0 Mrays/s  tile 6 of 16"
-        );
+        assert_eq!(above[33], "0 ▕████████        ▏   45.0 ms   10.0 Mrays/s  tile 6 of 16");
         assert_eq!(above[34..], ["1 waiting"]);
-        assert_eq!(
-            text,
-            "50 %  1 of 64 spp  0.08 Mrays/s  error 2.1 % at 1 spp  20 s left"
-        );
+        assert_eq!(text, "50 %  1 of 64 spp  0.08 Mrays/s  error 2.1 % at 1 spp  20 s left");
     }
 
     #[test]
@@ -289,28 +194,16 @@ mod tests {
 
     #[test]
     fn names_of_scenes_cannot_move_the_cursor() {
-        let title = Title {
-            scene: "a\x1b[2Jb\nc".into(),
-            ..fixture::title()
-        };
+        let title = Title { scene: "a\x1b[2Jb\nc".into(), ..fixture::title() };
         assert!(heading(&title).starts_with("a?[2Jb?c  64x64"));
     }
 
     #[test]
     fn the_last_frame_has_the_picture_and_the_summary() {
         let mut tally = fixture::half_way(2);
-        assert_eq!(
-            last(&fixture::title(), &tally, None, LOOK, (80, 24)),
-            Vec::<String>::new()
-        );
+        assert_eq!(last(&fixture::title(), &tally, None, LOOK, (80, 24)), Vec::<String>::new());
         tally.hear(&fixture::finished(false));
-        let lines = last(
-            &fixture::title(),
-            &tally,
-            Some(&Picture::new(AREA)),
-            LOOK,
-            (80, 24),
-        );
+        let lines = last(&fixture::title(), &tally, Some(&Picture::new(AREA)), LOOK, (80, 24));
         assert_eq!(lines.len(), 1 + 19 + 3);
         assert!(lines[20].starts_with("done: "));
     }

@@ -32,11 +32,7 @@ pub struct Json<W> {
 impl<W: Write> Json<W> {
     /// JSON lines on `out`.
     pub fn new(title: Title, out: W) -> Self {
-        Self {
-            title,
-            out,
-            lines: String::new(),
-        }
+        Self { title, out, lines: String::new() }
     }
 
     fn write(&mut self) {
@@ -62,29 +58,12 @@ impl<W: Write> View for Json<W> {
 
 fn object(event: &Event, title: &Title) -> Value {
     match event {
-        Event::Started {
-            area,
-            tiles,
-            from,
-            until,
-            samples,
-            ..
-        } => json!({
+        Event::Started { area, tiles, from, until, samples, .. } => json!({
             "event": "started", "scene": title.scene, "area": place(*area), "spp": until,
             "integrator": title.integrator, "threads": title.threads, "simd": title.level,
             "setup_seconds": title.setup.as_secs_f64(), "tiles": tiles.len(), "from_spp": from, "samples": samples,
         }),
-        Event::TileFinished {
-            tile,
-            area,
-            pass,
-            worker,
-            elapsed,
-            rays,
-            samples,
-            rejected,
-            ..
-        } => json!({
+        Event::TileFinished { tile, area, pass, worker, elapsed, rays, samples, rejected, .. } => json!({
             "event": "tile_finished", "tile": tile, "area": place(*area), "pass": pass, "worker": worker,
             "seconds": elapsed.as_secs_f64(), "samples": samples,
             "rays": { "camera": rays.camera, "scattered": rays.scattered, "shadow": rays.shadow },
@@ -93,27 +72,18 @@ fn object(event: &Event, title: &Title) -> Value {
         Event::SampleRejected(rejected) => json!({
             "event": "sample_rejected", "pixel": rejected.pixel, "sample": rejected.sample,
         }),
-        Event::PassFinished {
-            pass,
-            samples,
-            elapsed,
-            error,
-        } => json!({
+        Event::PassFinished { pass, samples, elapsed, error } => json!({
             "event": "pass_finished", "pass": pass, "spp": samples, "seconds": elapsed.as_secs_f64(),
             "relative_error": error,
         }),
-        Event::Finished {
-            interrupted,
-            timing,
-        } => finished(*interrupted, timing),
+        Event::Finished { interrupted, timing } => finished(*interrupted, timing),
     }
 }
 
 fn finished(interrupted: bool, timing: &Timing) -> Value {
     let balance = timing.balance();
-    let [min, median, max] = balance
-        .map_or([Duration::ZERO; 3], |of| [of.min, of.median, of.max])
-        .map(|t| t.as_secs_f64());
+    let [min, median, max] =
+        balance.map_or([Duration::ZERO; 3], |of| [of.min, of.median, of.max]).map(|t| t.as_secs_f64());
     json!({
         "event": "finished", "interrupted": interrupted, "seconds": timing.elapsed.as_secs_f64(),
         "passes": timing.passes, "idle": timing.idle(),
@@ -133,14 +103,10 @@ mod tests {
 
     fn lines(facts: &[Event]) -> Vec<Value> {
         let mut json = Json::new(fixture::title(), Vec::new());
-        facts
-            .iter()
-            .for_each(|fact| json.hear(fact, &Tally::default()));
+        facts.iter().for_each(|fact| json.hear(fact, &Tally::default()));
         json.tick(&Tally::default());
         let text = String::from_utf8(json.out).unwrap();
-        text.lines()
-            .map(|line| serde_json::from_str(line).unwrap())
-            .collect()
+        text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
     }
 
     #[test]
@@ -150,50 +116,24 @@ mod tests {
         let lines = lines(&facts);
         assert_eq!(lines.len(), facts.len());
         let started = &lines[0];
-        assert_eq!(
-            (&started["event"], &started["area"]),
-            (&json!("started"), &json!([10, 20, 64, 64]))
-        );
-        assert_eq!(
-            (&started["samples"], &started["setup_seconds"]),
-            (&json!(262_144), &json!(0.12))
-        );
+        assert_eq!((&started["event"], &started["area"]), (&json!("started"), &json!([10, 20, 64, 64])));
+        assert_eq!((&started["samples"], &started["setup_seconds"]), (&json!(262_144), &json!(0.12)));
         let tile = &lines[2];
-        assert_eq!(
-            (&tile["event"], &tile["area"]),
-            (&json!("tile_finished"), &json!([26, 20, 16, 16]))
-        );
+        assert_eq!((&tile["event"], &tile["area"]), (&json!("tile_finished"), &json!([26, 20, 16, 16])));
         assert_eq!(
             (&tile["worker"], &tile["seconds"], &tile["rays"]["shadow"]),
             (&json!(1), &json!(0.01), &json!(49_744))
         );
-        assert_eq!(
-            lines[17],
-            json!({ "event": "sample_rejected", "pixel": [12, 30], "sample": 0 })
-        );
+        assert_eq!(lines[17], json!({ "event": "sample_rejected", "pixel": [12, 30], "sample": 0 }));
         assert_eq!(lines[18]["relative_error"], json!(0.0213));
-        assert_eq!(
-            (&lines[19]["interrupted"], &lines[19]["slowest_tile"]),
-            (&json!(true), &json!([58, 68, 16, 16]))
-        );
+        assert_eq!((&lines[19]["interrupted"], &lines[19]["slowest_tile"]), (&json!(true), &json!([58, 68, 16, 16])));
     }
 
     #[test]
     fn numbers_that_do_not_exist_are_null() {
         let timing = Timing::default();
-        let pass = Event::PassFinished {
-            pass: 0,
-            samples: 1,
-            elapsed: Duration::ZERO,
-            error: Some(f64::NAN),
-        };
-        let lines = lines(&[
-            pass,
-            Event::Finished {
-                interrupted: false,
-                timing,
-            },
-        ]);
+        let pass = Event::PassFinished { pass: 0, samples: 1, elapsed: Duration::ZERO, error: Some(f64::NAN) };
+        let lines = lines(&[pass, Event::Finished { interrupted: false, timing }]);
         assert!(lines[0]["relative_error"].is_null());
         assert!(lines[1]["tile_seconds"].is_null() && lines[1]["slowest_tile"].is_null());
     }

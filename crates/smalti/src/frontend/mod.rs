@@ -15,6 +15,7 @@ mod frame;
 mod json;
 mod numbers;
 mod pace;
+mod pen;
 mod picture;
 mod plain;
 mod screen;
@@ -63,9 +64,7 @@ fn choose(typed: ProgressArg, quiet: bool, colour: When, terminal: &Terminal) ->
         _ if quiet => Mode::None,
         ProgressArg::None => Mode::None,
         ProgressArg::Json => Mode::Json,
-        ProgressArg::Auto | ProgressArg::Bar if terminal.draws() => {
-            Mode::Bar(terminal.palette(colour))
-        }
+        ProgressArg::Auto | ProgressArg::Bar if terminal.draws() => Mode::Bar(terminal.palette(colour)),
         _ => Mode::Plain,
     }
 }
@@ -119,13 +118,9 @@ pub fn start(mode: Mode, title: Title) -> (Display, Option<Watch>) {
         Mode::None => {}
     };
     match thread::Builder::new().name("frontend".into()).spawn(show) {
-        Ok(thread) => (
-            Display(Some(thread)),
-            Some(Watch {
-                pictures: matches!(mode, Mode::Bar(_)),
-                ..Watch::new(sender)
-            }),
-        ),
+        Ok(thread) => {
+            (Display(Some(thread)), Some(Watch { pictures: matches!(mode, Mode::Bar(_)), ..Watch::new(sender) }))
+        }
         // No thread, no display; the render is what counts.
         Err(_) => (Display(None), None),
     }
@@ -180,15 +175,8 @@ mod tests {
 
     #[test]
     fn the_mode_follows_the_user_then_the_terminal() {
-        let terminal = Terminal {
-            attended: true,
-            term: "xterm-256color".into(),
-            ..Terminal::default()
-        };
-        let file = Terminal {
-            attended: false,
-            ..terminal.clone()
-        };
+        let terminal = Terminal { attended: true, term: "xterm-256color".into(), ..Terminal::default() };
+        let file = Terminal { attended: false, ..terminal.clone() };
         let bar = Mode::Bar(Palette::Indexed);
         let cases = [
             (ProgressArg::Auto, &terminal, bar),
@@ -200,17 +188,10 @@ mod tests {
             (ProgressArg::None, &terminal, Mode::None),
         ];
         for (typed, terminal, expected) in cases {
-            assert_eq!(
-                choose(typed, false, When::Auto, terminal),
-                expected,
-                "{typed:?}"
-            );
+            assert_eq!(choose(typed, false, When::Auto, terminal), expected, "{typed:?}");
             assert_eq!(choose(typed, true, When::Auto, terminal), Mode::None);
         }
-        assert_eq!(
-            choose(ProgressArg::Auto, false, When::Never, &terminal),
-            Mode::Bar(Palette::Mono)
-        );
+        assert_eq!(choose(ProgressArg::Auto, false, When::Never, &terminal), Mode::Bar(Palette::Mono));
     }
 
     #[test]
@@ -250,9 +231,7 @@ mod tests {
         let mut facts = fixture::first_pass(2);
         facts.push(fixture::finished(false));
         let count = facts.len();
-        facts
-            .into_iter()
-            .for_each(|fact| sender.send(fact).unwrap());
+        facts.into_iter().for_each(|fact| sender.send(fact).unwrap());
         drop(sender);
         let mut listener = Listener::default();
         run(&events, &mut listener);

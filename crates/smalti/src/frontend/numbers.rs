@@ -29,15 +29,8 @@ pub fn range(low: Duration, high: Duration) -> String {
         ..=172_800.0 => (3600.0, "h"),
         _ => (86_400.0, "d"),
     };
-    let (low, high) = (
-        (low.as_secs_f64() / unit).floor(),
-        (high.as_secs_f64() / unit).ceil(),
-    );
-    if low >= high {
-        format!("{high} {name}")
-    } else {
-        format!("{low}-{high} {name}")
-    }
+    let (low, high) = ((low.as_secs_f64() / unit).floor(), (high.as_secs_f64() / unit).ceil());
+    if low >= high { format!("{high} {name}") } else { format!("{low}-{high} {name}") }
 }
 
 /// Rays a second: `12.3 Mrays/s`.
@@ -58,12 +51,7 @@ pub fn count(number: u64) -> String {
 
 /// The whole percents that are done: 100 only when all is.
 pub fn done(part: u64, whole: u64) -> String {
-    format!(
-        "{} %",
-        (u128::from(part) * 100)
-            .checked_div(u128::from(whole))
-            .unwrap_or(100)
-    )
+    format!("{} %", (u128::from(part) * 100).checked_div(u128::from(whole)).unwrap_or(100))
 }
 
 /// A share in percent, with a digit more where it is small: `0.43 %`, `2.1 %`, `37 %`.
@@ -89,18 +77,10 @@ fn significant(value: f64) -> String {
 pub fn bar(part: u64, whole: u64, width: usize) -> String {
     const EIGHTHS: [char; 8] = [' ', '▏', '▎', '▍', '▌', '▋', '▊', '▉'];
     let all = 8 * width as u128;
-    let filled = (u128::from(part) * all)
-        .checked_div(u128::from(whole))
-        .unwrap_or(0)
-        .min(all) as usize;
+    let filled = (u128::from(part) * all).checked_div(u128::from(whole)).unwrap_or(0).min(all) as usize;
     let edge = (filled < 8 * width).then(|| EIGHTHS[filled % 8]);
     let rest = " ".repeat((width - filled / 8).saturating_sub(1));
-    "█"
-        .repeat(filled / 8)
-        .chars()
-        .chain(edge)
-        .chain(rest.chars())
-        .collect()
+    "█".repeat(filled / 8).chars().chain(edge).chain(rest.chars()).collect()
 }
 
 #[cfg(test)]
@@ -158,14 +138,8 @@ mod tests {
             [999, 1000, 12_345, 999_600, 3_200_000_000].map(count),
             ["999", "1.00 k", "12.3 k", "1.00 M", "3.20 G"]
         );
-        assert_eq!(
-            [0.00431, 0.0214, 0.0996, 0.374].map(share),
-            ["0.43 %", "2.1 %", "10 %", "37 %"]
-        );
-        assert_eq!(
-            (done(999, 1000), done(5, 5), done(0, 0)),
-            ("99 %".into(), "100 %".into(), "100 %".into())
-        );
+        assert_eq!([0.00431, 0.0214, 0.0996, 0.374].map(share), ["0.43 %", "2.1 %", "10 %", "37 %"]);
+        assert_eq!((done(999, 1000), done(5, 5), done(0, 0)), ("99 %".into(), "100 %".into(), "100 %".into()));
         assert_eq!(done(u64::MAX, u64::MAX), "100 %");
     }
 

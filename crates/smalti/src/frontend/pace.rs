@@ -23,11 +23,7 @@ impl Pace {
             return;
         }
         self.marks.push_back((at, done));
-        while self
-            .marks
-            .front()
-            .is_some_and(|first| first.0 + MEMORY < at)
-        {
+        while self.marks.front().is_some_and(|first| first.0 + MEMORY < at) {
             self.marks.pop_front();
         }
     }
@@ -36,15 +32,9 @@ impl Pace {
     /// overall, over the last twenty seconds and over the last five. `None` while too little is known.
     pub fn remaining(&self, total: u64) -> Option<(Duration, Duration)> {
         let &(now, done) = self.marks.back().filter(|last| last.0 >= LEAST)?;
-        let recent = self
-            .marks
-            .iter()
-            .find(|mark| mark.0 + Duration::from_secs(5) >= now);
+        let recent = self.marks.iter().find(|mark| mark.0 + Duration::from_secs(5) >= now);
         let since = [Some(&(Duration::ZERO, 0)), self.marks.front(), recent];
-        let rates = since
-            .into_iter()
-            .flatten()
-            .filter_map(|mark| rate(*mark, (now, done)));
+        let rates = since.into_iter().flatten().filter_map(|mark| rate(*mark, (now, done)));
         let rest = total.saturating_sub(done) as f64;
         let fastest = rates.clone().fold(0.0, f64::max);
         let slowest = rates.fold(f64::INFINITY, f64::min);
@@ -79,9 +69,7 @@ mod tests {
 
     #[test]
     fn a_steady_pace_is_a_narrow_range() {
-        let (low, high) = pace(|at| (at * 100.0) as u64, 30)
-            .remaining(10_000)
-            .unwrap();
+        let (low, high) = pace(|at| (at * 100.0) as u64, 30).remaining(10_000).unwrap();
         assert!(
             (low.as_secs_f64() - 70.0).abs() < 0.01 && (high.as_secs_f64() - 70.0).abs() < 0.01,
             "{low:?} {high:?}"
@@ -110,10 +98,7 @@ mod tests {
 
     #[test]
     fn what_is_done_takes_no_time() {
-        assert_eq!(
-            pace(|at| at as u64, 9).remaining(9),
-            Some((Duration::ZERO, Duration::ZERO))
-        );
+        assert_eq!(pace(|at| at as u64, 9).remaining(9), Some((Duration::ZERO, Duration::ZERO)));
     }
 
     #[test]

@@ -30,9 +30,7 @@ struct Cadence {
 impl Cadence {
     /// Whether a line is due.
     fn due(&mut self, at: Duration, done: u64, total: u64) -> bool {
-        let tenths = (u128::from(done) * 10)
-            .checked_div(u128::from(total))
-            .unwrap_or(0) as u64;
+        let tenths = (u128::from(done) * 10).checked_div(u128::from(total)).unwrap_or(0) as u64;
         let due = tenths > self.tenths || at >= self.at + SILENCE;
         if due {
             *self = Self { at, tenths };
@@ -44,11 +42,7 @@ impl Cadence {
 impl<W: Write> Plain<W> {
     /// Lines on `out`.
     pub fn new(title: Title, out: W) -> Self {
-        Self {
-            title,
-            out,
-            cadence: Cadence::default(),
-        }
+        Self { title, out, cadence: Cadence::default() }
     }
 
     fn say(&mut self, line: &str) {
@@ -72,9 +66,7 @@ impl<W: Write> View for Plain<W> {
 
     fn end(&mut self, tally: &Tally) {
         if let Some(end) = &tally.end {
-            summary::lines(&self.title, tally, end)
-                .iter()
-                .for_each(|line| self.say(line));
+            summary::lines(&self.title, tally, end).iter().for_each(|line| self.say(line));
         }
     }
 }
@@ -91,12 +83,8 @@ mod tests {
     #[test]
     fn a_line_every_tenth_when_it_goes_fast() {
         let mut cadence = Cadence::default();
-        let lines =
-            (0..=1000).filter(|done| cadence.due(Duration::from_millis(*done), *done, 1000));
-        assert_eq!(
-            lines.collect::<Vec<_>>(),
-            [100, 200, 300, 400, 500, 600, 700, 800, 900, 1000]
-        );
+        let lines = (0..=1000).filter(|done| cadence.due(Duration::from_millis(*done), *done, 1000));
+        assert_eq!(lines.collect::<Vec<_>>(), [100, 200, 300, 400, 500, 600, 700, 800, 900, 1000]);
     }
 
     #[test]
@@ -128,14 +116,8 @@ mod tests {
         plain.end(&tally);
         let log = String::from_utf8(plain.out).unwrap();
         let lines: Vec<_> = log.lines().collect();
-        assert_eq!(
-            lines[0],
-            "scenes/a room with a rather long name.toml  64x64  64 spp  path  2 threads  avx2"
-        );
-        assert_eq!(
-            lines[1],
-            "50 %  1 of 64 spp  0.08 Mrays/s  error 2.1 % at 1 spp  20 s left"
-        );
+        assert_eq!(lines[0], "scenes/a room with a rather long name.toml  64x64  64 spp  path  2 threads  avx2");
+        assert_eq!(lines[1], "50 %  1 of 64 spp  0.08 Mrays/s  error 2.1 % at 1 spp  20 s left");
         assert!(lines[2].starts_with("done: ") && lines.len() == 5, "{log}");
         assert!(log.is_ascii() && !log.contains('\x1b'));
     }

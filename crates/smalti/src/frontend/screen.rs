@@ -50,20 +50,14 @@ impl Screen {
     }
 
     fn shift(&self, count: usize, direction: char) -> io::Result<()> {
-        if count == 0 {
-            Ok(())
-        } else {
-            self.push(&format!("\x1b[{count}{direction}"))
-        }
+        if count == 0 { Ok(()) } else { self.push(&format!("\x1b[{count}{direction}")) }
     }
 }
 
 impl Surface for Screen {
     fn measure(&self) {
         let (height, width) = Term::stderr().size();
-        let columns = env::var("COLUMNS")
-            .ok()
-            .and_then(|columns| columns.parse::<u16>().ok());
+        let columns = env::var("COLUMNS").ok().and_then(|columns| columns.parse::<u16>().ok());
         let narrower = columns.filter(|columns| (1..width).contains(columns));
         let mut state = self.state();
         (state.width, state.height) = (narrower.unwrap_or(width).max(2), height.max(1));

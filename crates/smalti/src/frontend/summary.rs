@@ -26,50 +26,30 @@ fn whole(title: &Title, tally: &Tally, end: &End) -> String {
         1 => "1 pass".to_owned(),
         passes => format!("{passes} passes"),
     };
-    let (setup, render) = (
-        numbers::duration(title.setup),
-        numbers::duration(end.timing.elapsed),
-    );
-    format!(
-        "{done}: set-up {setup}, render {render} in {passes}, {}",
-        numbers::rays(tally.rays_per_second())
-    )
+    let (setup, render) = (numbers::duration(title.setup), numbers::duration(end.timing.elapsed));
+    format!("{done}: set-up {setup}, render {render} in {passes}, {}", numbers::rays(tally.rays_per_second()))
 }
 
 fn tiles(end: &End) -> Option<String> {
     let balance = end.timing.balance()?;
     let times = [balance.min, balance.median, balance.max].map(numbers::duration);
-    let Rect {
-        x,
-        y,
-        width,
-        height,
-    } = balance.slowest;
+    let Rect { x, y, width, height } = balance.slowest;
     let [min, median, max] = times;
     let count = end.timing.tiles.len();
-    Some(format!(
-        "tiles {count}: min {min}, median {median}, max {max}; slowest at {x},{y} ({width}x{height})"
-    ))
+    Some(format!("tiles {count}: min {min}, median {median}, max {max}; slowest at {x},{y} ({width}x{height})"))
 }
 
 /// The idle share of each worker, or of the least, the middle and the most idle one of many.
 fn idle(shares: &[f64]) -> Option<String> {
-    let list = |shares: &[f64]| {
-        shares
-            .iter()
-            .map(|share| numbers::share(*share))
-            .collect::<Vec<_>>()
-            .join(", ")
-    };
+    let list = |shares: &[f64]| shares.iter().map(|share| numbers::share(*share)).collect::<Vec<_>>().join(", ");
     let mut sorted = shares.to_vec();
     sorted.sort_by(f64::total_cmp);
     match sorted.len() {
         0 => None,
         1..=NAMED => Some(format!("idle {}", list(shares))),
-        many => Some(format!(
-            "idle min, median, max of {many}: {}",
-            list(&[sorted[0], sorted[many / 2], sorted[many - 1]])
-        )),
+        many => {
+            Some(format!("idle min, median, max of {many}: {}", list(&[sorted[0], sorted[many / 2], sorted[many - 1]])))
+        }
     }
 }
 
@@ -84,14 +64,8 @@ mod tests {
         for (interrupted, start) in [(false, "done"), (true, "interrupted at 50 %")] {
             tally.hear(&fixture::finished(interrupted));
             let lines = lines(&fixture::title(), &tally, tally.end.as_ref().unwrap());
-            assert_eq!(
-                lines[0],
-                format!("{start}: set-up 120 ms, render 1.0 s in 7 passes, 1.60 Mrays/s")
-            );
-            assert_eq!(
-                lines[1],
-                "tiles 16: min 1.00 ms, median 9.00 ms, max 16.0 ms; slowest at 58,68 (16x16)"
-            );
+            assert_eq!(lines[0], format!("{start}: set-up 120 ms, render 1.0 s in 7 passes, 1.60 Mrays/s"));
+            assert_eq!(lines[1], "tiles 16: min 1.00 ms, median 9.00 ms, max 16.0 ms; slowest at 58,68 (16x16)");
             assert_eq!(lines[2..], ["idle 1.0 %, 30 %"]);
         }
     }
@@ -99,10 +73,7 @@ mod tests {
     #[test]
     fn many_workers_are_summed_up() {
         let shares: Vec<f64> = (0..17).rev().map(|n| f64::from(n) / 100.0).collect();
-        assert_eq!(
-            idle(&shares[..]).unwrap(),
-            "idle min, median, max of 17: 0.00 %, 8.0 %, 16 %"
-        );
+        assert_eq!(idle(&shares[..]).unwrap(), "idle min, median, max of 17: 0.00 %, 8.0 %, 16 %");
         assert_eq!(idle(&shares[15..]).unwrap(), "idle 1.0 %, 0.00 %");
         assert_eq!(idle(&[]), None);
     }

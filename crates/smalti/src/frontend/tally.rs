@@ -64,31 +64,16 @@ impl Tally {
     /// Adds a fact.
     pub fn hear(&mut self, event: &Event) {
         match event {
-            Event::Started {
-                area,
-                tiles,
-                from,
-                until,
-                samples,
-                progress,
-            } => {
+            Event::Started { area, tiles, from, until, samples, progress } => {
                 self.area = *area;
                 self.tiles.clone_from(tiles);
                 (self.samples, self.until, self.total) = (*from, *until, *samples);
                 self.workers = vec![Worker::default(); progress.workers()];
                 self.progress = Some(progress.clone());
             }
-            Event::TileFinished {
-                worker,
-                elapsed,
-                rays,
-                samples,
-                rejected,
-                ..
-            } => {
+            Event::TileFinished { worker, elapsed, rays, samples, rejected, .. } => {
                 let rays = rays.camera + rays.scattered + rays.shadow;
-                self.workers[*worker].rays_per_second =
-                    Some(rays as f64 / elapsed.as_secs_f64().max(1e-9));
+                self.workers[*worker].rays_per_second = Some(rays as f64 / elapsed.as_secs_f64().max(1e-9));
                 self.finished += samples;
                 self.done = self.done.max(self.finished);
                 self.rays += rays;
@@ -99,15 +84,9 @@ impl Tally {
                 self.samples = *samples;
                 self.error = error.map(|error| (error, *samples)).or(self.error);
             }
-            Event::Finished {
-                interrupted,
-                timing,
-            } => {
+            Event::Finished { interrupted, timing } => {
                 self.elapsed = timing.elapsed;
-                self.end = Some(End {
-                    interrupted: *interrupted,
-                    timing: timing.clone(),
-                });
+                self.end = Some(End { interrupted: *interrupted, timing: timing.clone() });
             }
         }
     }
@@ -121,10 +100,7 @@ impl Tally {
         for (index, worker) in self.workers.iter_mut().enumerate() {
             worker.current = progress.current(index, now);
         }
-        self.done = self
-            .done
-            .max(self.finished + progress.in_hand())
-            .min(self.total);
+        self.done = self.done.max(self.finished + progress.in_hand()).min(self.total);
         self.pace.note(self.elapsed, self.done);
     }
 

@@ -48,8 +48,7 @@ impl Terminal {
 
     /// The colours to use.
     pub fn palette(&self, colour: When) -> Palette {
-        let truly = matches!(self.colorterm.as_str(), "truecolor" | "24bit")
-            || self.term.contains("direct");
+        let truly = matches!(self.colorterm.as_str(), "truecolor" | "24bit") || self.term.contains("direct");
         match colour {
             When::Never => Palette::Mono,
             When::Auto if self.no_color => Palette::Mono,
@@ -66,12 +65,7 @@ mod tests {
     use super::*;
 
     fn terminal(term: &str, colorterm: &str) -> Terminal {
-        Terminal {
-            attended: true,
-            term: term.into(),
-            colorterm: colorterm.into(),
-            no_color: false,
-        }
+        Terminal { attended: true, term: term.into(), colorterm: colorterm.into(), no_color: false }
     }
 
     #[test]
@@ -79,13 +73,7 @@ mod tests {
         assert!(terminal("xterm", "").draws());
         assert!(!terminal("dumb", "").draws());
         assert!(!terminal("", "").draws());
-        assert!(
-            !Terminal {
-                attended: false,
-                ..terminal("xterm", "")
-            }
-            .draws()
-        );
+        assert!(!Terminal { attended: false, ..terminal("xterm", "") }.draws());
     }
 
     #[test]
@@ -93,16 +81,10 @@ mod tests {
         let rich = terminal("xterm-256color", "truecolor");
         assert_eq!(rich.palette(When::Auto), Palette::True);
         assert_eq!(rich.palette(When::Never), Palette::Mono);
-        assert_eq!(
-            terminal("screen-256color", "").palette(When::Auto),
-            Palette::Indexed
-        );
+        assert_eq!(terminal("screen-256color", "").palette(When::Auto), Palette::Indexed);
         assert_eq!(terminal("vt100", "").palette(When::Auto), Palette::Mono);
         assert_eq!(terminal("vt100", "").palette(When::Always), Palette::True);
-        let no_color = Terminal {
-            no_color: true,
-            ..rich
-        };
+        let no_color = Terminal { no_color: true, ..rich };
         assert_eq!(no_color.palette(When::Auto), Palette::Mono);
         assert_eq!(no_color.palette(When::Always), Palette::True);
     }
