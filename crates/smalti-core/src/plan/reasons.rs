@@ -22,6 +22,11 @@ fn decision(subject: &'static str, choice: impl Into<String>, reason: impl Into<
     Decision { subject, choice: choice.into(), reason: reason.into(), bytes }
 }
 
+/// "1 mirror", "2 mirrors".
+fn counted(count: usize, name: &str) -> String {
+    format!("{count} {name}{}", if count == 1 { "" } else { "s" })
+}
+
 fn accelerator(plan: &Plan, scene: &Scene) -> Decision {
     let tables = (scene.shades.len() * 44 + scene.faces.len() * 28 + scene.vertices.len() * 12) as u64;
     let list = plan.everything.list.len();
@@ -65,18 +70,21 @@ fn stage_reason(stage: &Stage, scene: &Scene, settings: &Settings) -> Decision {
         let mask = (1 << Class::BITS) - 1;
         scene.classes.iter().filter(|code| *code & mask == class as u32).count()
     };
-    let of = |class: Class, name: &str| format!("{} {name} primitives", count(class));
+    let of = |class: Class, name: &str| counted(count(class), &format!("{name} primitive"));
     let rays = settings.shadow_rays;
     let (choice, reason) = match stage {
         Stage::Intersect => ("intersect", "every ray hits something or nothing".into()),
         Stage::Sort => ("sort", "one stream for each stage that follows".into()),
-        Stage::Emission => ("emission", format!("{} primitives emit", scene.lights.emitters.len())),
+        Stage::Emission => ("emission", counted(scene.lights.emitters.len(), "emitting primitive")),
         Stage::Environment => ("environment", "light arrives from infinity; scattered rays find it".into()),
         Stage::Surface => ("surface", of(Class::Lambert, "diffuse")),
-        Stage::Direct { weighed: true } => {
-            ("direct light", format!("{rays} light samples a vertex, weighed against the scattered ray"))
+        Stage::Direct { weighed: true } => (
+            "direct light",
+            format!("{} a vertex, weighed against the scattered ray", counted(rays as usize, "light sample")),
+        ),
+        Stage::Direct { weighed: false } => {
+            ("direct light", format!("{} a vertex", counted(rays as usize, "light sample")))
         }
-        Stage::Direct { weighed: false } => ("direct light", format!("{rays} light samples a vertex")),
         Stage::Diffuse => ("diffuse bounce", "indirect light by cosine-distributed rays".into()),
         Stage::Mirror(_) => ("mirror", of(Class::Mirror, "mirror")),
         Stage::Dielectric(..) => ("dielectric", of(Class::Dielectric, "dielectric")),
