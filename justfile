@@ -43,4 +43,9 @@ report:
 # Take what the program says now as what the tests expect; look at the difference before it is committed
 bless:
     SMALTI_BLESS=1 cargo test --package smalti-scene --test bad
+    SMALTI_BLESS=1 cargo test --package smalti-tests --test golden
     git diff --stat
+
+# Put each known mistake in and see that a test notices (about half an hour)
+mutants *NAMES:
+    tests/mutants.sh {{NAMES}}
