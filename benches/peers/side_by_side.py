@@ -10,7 +10,7 @@ import argparse, glob, json, os, resource, statistics, subprocess, sys, tempfile
 
 here = os.path.dirname(os.path.abspath(__file__)); root = os.path.dirname(os.path.dirname(here))
 p = argparse.ArgumentParser(); p.add_argument("folder"); p.add_argument("cases", nargs="*"); p.add_argument("--reference")
-p.add_argument("--pairs", type=int, default=5); a = p.parse_args()
+p.add_argument("--pairs", type=int, default=5); a = p.parse_intermixed_args()
 python = os.path.join(a.folder, "venv/bin/python"); smalti = os.path.join(root, "target/release/smalti")
 out = tempfile.mkdtemp(); env = dict(os.environ)
 for library in glob.glob("/usr/lib/*/libLLVM-19.so"): env.setdefault("DRJIT_LIBLLVM_PATH", library)

@@ -1,1 +1,7 @@
 //! What the acceptance tests share.
+
+pub mod build;
+pub mod draw;
+pub mod estimate;
+pub mod oracle;
+pub mod statistics;

@@ -134,12 +134,12 @@ impl Film {
 
     /// One estimate a pixel in image order, or `None` while some tile has fewer than two complete rounds.
     pub fn estimates(&self) -> Option<Vec<Estimate>> {
+        if self.samples().0 < 2 * ROUND {
+            return None;
+        }
         let unknown = Estimate { mean: [0.0; 3], variance: [0.0; 3], rounds: 0 };
         let mut estimates = vec![unknown; self.area.pixels()];
         for tile in &self.tiles {
-            if tile.samples < 2 * ROUND {
-                return None;
-            }
             self.for_each(tile, |index, pixel| {
                 estimates[index] = Estimate {
                     mean: pixel.mean(tile.samples),
