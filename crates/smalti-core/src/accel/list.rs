@@ -155,6 +155,25 @@ impl List {
         left | right
     }
 
+    /// 1 / (d · d), where there are spheres to need it.
+    #[inline(always)]
+    fn inverse_square<L: Lanes>(&self, l: L, ray: &Ray<L>) -> L::F {
+        if self.spheres.is_empty() { l.f(1.0) } else { l.f(1.0) / ray.direction.dot(l, ray.direction) }
+    }
+
+    /// Whether the face lies in (0, 1) for the lanes `inside`.
+    #[inline(always)]
+    fn face_stops<L: Lanes>(&self, l: L, ray: &Ray<L>, face: &ListFace, inside: L::M) -> L::M {
+        let [nx, ny, nz, offset] = face.plane;
+        let (within, grazing) = polygon::within(l, ray, V3::splat(l, [nx, ny, nz]), l.f(offset));
+        if l.any(inside & grazing) {
+            let t = self.face_distance(l, ray, face, inside);
+            let clamped = l.lt(l.f(0.0), t) & l.lt(t, l.f(1.0));
+            return (grazing & clamped) | (!grazing & within);
+        }
+        within
+    }
+
     /// Distance to a face for the lanes `inside`.
     #[inline(always)]
     fn face_distance<L: Lanes>(&self, l: L, ray: &Ray<L>, face: &ListFace, inside: L::M) -> L::F {
@@ -197,8 +216,9 @@ impl<'a, L: Lanes> Tracer<'a, L> {
                 prim = l.select_u(nearer, l.u(face.prim), prim);
             }
         }
+        let inverse = self.list.inverse_square(l, ray);
         for ball in &self.list.spheres {
-            let t = ball.hit(l, ray);
+            let t = ball.hit(l, ray, inverse);
             let nearer = l.lt(t, best);
             best = l.select(nearer, t, best);
             prim = l.select_u(nearer, l.u(ball.prim), prim);
@@ -206,24 +226,21 @@ impl<'a, L: Lanes> Tracer<'a, L> {
         (best, prim)
     }
 
-    /// Which of `lanes` hit something in (0, `reach`) that is not `target`.
+    /// Which of `lanes` hit something in (0, 1) that is not `target`.
     #[inline(always)]
-    pub fn occluded(&mut self, l: L, ray: &Ray<L>, reach: L::F, target: L::U, lanes: L::M) -> L::M {
+    pub fn occluded(&mut self, l: L, ray: &Ray<L>, target: L::U, lanes: L::M) -> L::M {
         self.list.project(l, ray, &mut self.scratch);
         let mut open = lanes;
-        let zero = l.f(0.0);
         for face in &self.list.faces {
             let own = l.u(face.surface);
             let counts = open & !l.eq_u(ray.leaves, own) & !l.eq_u(target, own);
+            // No branch on whether any lane is inside: it could not be predicted, and there is no division to save.
             let inside = self.list.inside(face, &self.scratch, counts);
-            if l.any(inside) {
-                let t = self.list.face_distance(l, ray, face, inside);
-                open = open & !(inside & l.lt(zero, t) & l.lt(t, reach));
-            }
+            open = open & !(inside & self.list.face_stops(l, ray, face, inside));
         }
+        let inverse = self.list.inverse_square(l, ray);
         for ball in &self.list.spheres {
-            let t = ball.hit(l, ray);
-            open = open & !(l.lt(t, reach) & !l.eq_u(target, l.u(ball.surface)));
+            open = open & !(ball.stops(l, ray, inverse) & !l.eq_u(target, l.u(ball.surface)));
         }
         lanes & !open
     }
@@ -231,9 +248,16 @@ impl<'a, L: Lanes> Tracer<'a, L> {
 
 impl ListSphere {
     #[inline(always)]
-    fn hit<L: Lanes>(&self, l: L, ray: &Ray<L>) -> L::F {
+    fn hit<L: Lanes>(&self, l: L, ray: &Ray<L>, inverse: L::F) -> L::F {
         let [x, y, z, r] = self.geometry;
         let leaves_it = l.eq_u(ray.leaves, l.u(self.surface));
-        sphere::hit(l, ray, V3::splat(l, [x, y, z]), l.f(r), leaves_it)
+        sphere::hit(l, ray, inverse, V3::splat(l, [x, y, z]), l.f(r), leaves_it)
+    }
+
+    #[inline(always)]
+    fn stops<L: Lanes>(&self, l: L, ray: &Ray<L>, inverse: L::F) -> L::M {
+        let [x, y, z, r] = self.geometry;
+        let leaves_it = l.eq_u(ray.leaves, l.u(self.surface));
+        sphere::stops(l, ray, inverse, V3::splat(l, [x, y, z]), l.f(r), leaves_it)
     }
 }

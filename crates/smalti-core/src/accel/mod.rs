@@ -109,7 +109,7 @@ impl<'a, L: Lanes> Tracer<'a, L> {
     pub fn occluded(&mut self, l: L, ray: &Ray<L>, target: L::U, lanes: L::M) -> L::M {
         let mut stopped = l.m(false);
         if let Some(list) = &mut self.list {
-            stopped = list.occluded(l, ray, l.f(1.0), target, lanes);
+            stopped = list.occluded(l, ray, target, lanes);
         }
         if let Some(tree) = self.tree {
             let asks = lanes & !stopped & tree.meets(l, ray, l.f(1.0));
@@ -120,7 +120,7 @@ impl<'a, L: Lanes> Tracer<'a, L> {
             while left != 0 {
                 let lane = left.trailing_zeros() as usize % 16;
                 let lone = rays.lone(lane);
-                answers[lane] = u32::from(tree.occluded(l.eight(), &lone, 1.0, targets[lane], &mut self.stack));
+                answers[lane] = u32::from(tree.occluded(l.eight(), &lone, targets[lane], &mut self.stack));
                 left &= left - 1;
             }
             stopped = stopped | l.eq_u(l.load_u(&answers), l.u(1));

@@ -8,15 +8,34 @@ use crate::mutant::mutant;
 /// face's box.
 const GRAZING: f32 = 1.0 / 128.0;
 
+/// The ray's cosine with a plane and its height below it, both in units of the direction: the distance is height /
+/// cosine. And the lanes that graze it.
+#[inline(always)]
+fn approach<L: Lanes>(l: L, ray: &Ray<L>, normal: V3<L>, offset: L::F) -> (L::F, L::F, L::M) {
+    let cosine = normal.dot(l, ray.direction);
+    let mut height = offset - normal.dot(l, ray.origin);
+    // Report eq. 16: (Q·E1) in place of (Q·E2) makes every distance 0.
+    if mutant!("eq16_distance_zero") {
+        height = l.f(0.0);
+    }
+    (height, cosine, l.lt(l.abs(cosine), ray.major * l.f(GRAZING)))
+}
+
 /// Distance to the plane, in units of the direction, and the lanes that graze it. The error of a distance that does
 /// not graze is below [`SLACK`](crate::accel::SLACK).
 #[inline(always)]
 pub fn distance<L: Lanes>(l: L, ray: &Ray<L>, normal: V3<L>, offset: L::F) -> (L::F, L::M) {
-    let cosine = normal.dot(l, ray.direction);
-    // Report eq. 16: (Q·E1) in place of (Q·E2) makes every distance 0.
-    let along = if mutant!("eq16_distance_zero") { l.f(0.0) } else { l.f(1.0) };
-    let height = (offset - normal.dot(l, ray.origin)) * along;
-    (height / cosine, l.lt(l.abs(cosine), ray.major * l.f(GRAZING)))
+    let (height, cosine, grazing) = approach(l, ray, normal, offset);
+    (height / cosine, grazing)
+}
+
+/// Whether the plane's distance lies in (0, 1), and the lanes that graze it: what comparing [`distance`] would say, as
+/// a / b < 1 exactly where a < b, without the division.
+#[inline(always)]
+pub fn within<L: Lanes>(l: L, ray: &Ray<L>, normal: V3<L>, offset: L::F) -> (L::M, L::M) {
+    let (height, cosine, grazing) = approach(l, ray, normal, offset);
+    let towards = l.reinterpret(l.bits(height) ^ (l.bits(cosine) & l.u(0x8000_0000)));
+    (l.lt(l.f(0.0), towards) & l.lt(towards, l.abs(cosine)), grazing)
 }
 
 /// `t` clamped to where the ray is inside the box: a grazing ray's distance is ill-conditioned, but the hit cannot lie

@@ -29,20 +29,20 @@ impl<L: Lanes> Ray<L> {
         let (ax, ay, az) = (l.abs(d.x), l.abs(d.y), l.abs(d.z));
         let x_major = l.le(ay, ax) & l.le(az, ax);
         let y_major = !x_major & l.le(az, ay);
-        let (zero, one) = (l.f(0.0), l.f(1.0));
+        let zero = l.f(0.0);
         let along = l.select(x_major, d.x, l.select(y_major, d.y, d.z));
-        let shear = l.f(-1.0) / along;
-        // With z major: (1, 0, -dx/dz) and (0, 1, -dy/dz); the others by permutation (y, z, x) and (z, x, y).
-        let (sx, sy, sz) = (d.x * shear, d.y * shear, d.z * shear);
+        // With z major: (dz, 0, -dx) and (0, dz, -dy); the others by permutation (y, z, x) and (z, x, y). Dividing by dz
+        // would scale both coordinates alike, which no sign of an edge function feels.
+        let (sx, sy, sz) = (-d.x, -d.y, -d.z);
         let first = V3::new(
-            l.select(x_major, sy, l.select(y_major, zero, one)),
-            l.select(x_major, one, l.select(y_major, sz, zero)),
-            l.select(x_major, zero, l.select(y_major, one, sx)),
+            l.select(x_major, sy, l.select(y_major, zero, along)),
+            l.select(x_major, along, l.select(y_major, sz, zero)),
+            l.select(x_major, zero, l.select(y_major, along, sx)),
         );
         let second = V3::new(
-            l.select(x_major, sz, l.select(y_major, one, zero)),
-            l.select(x_major, zero, l.select(y_major, sx, one)),
-            l.select(x_major, one, l.select(y_major, zero, sy)),
+            l.select(x_major, sz, l.select(y_major, along, zero)),
+            l.select(x_major, zero, l.select(y_major, sx, along)),
+            l.select(x_major, along, l.select(y_major, zero, sy)),
         );
         Self { origin, direction, leaves, across: (first, second), major: l.abs(along) }
     }

@@ -9,12 +9,12 @@ use crate::sampling::warp;
 pub struct Incident<L: Lanes> {
     /// From the point to the light point; the light is at t = 1.
     pub reach: V3<L>,
-    /// Unit vector towards the light.
-    pub wi: V3<L>,
-    /// Radiance that arrives (for a point light: intensity / distance²).
+    /// Radiance that arrives (for a point light its intensity).
     pub radiance: Rgb<L>,
-    /// Solid-angle density of this choice and point, sr⁻¹; for a point light the chance of its choice.
-    pub pdf: L::F,
+    /// What the cosine at the point counts for, as a fraction: (normal · reach) · `spread.0` / `spread.1` is cosθ / pdf,
+    /// with the solid-angle pdf of this choice and point. A fraction, because divisions are what a light sample costs
+    /// most, and this way one is enough for all.
+    pub spread: (L::F, L::F),
     /// Lanes where chance could also have found this light by scattering: not a point light.
     pub by_chance: L::M,
     /// Surface of the light: cannot stop the shadow ray.
@@ -56,14 +56,19 @@ pub fn sample<L: Lanes>(
 }
 
 impl<L: Lanes> Incident<L> {
+    /// Solid-angle density of this choice and point, sr⁻¹; for a point light it has the squared distance in it.
+    #[inline(always)]
+    pub fn pdf(&self, l: L) -> L::F {
+        self.spread.1 / (self.spread.0 * l.sqrt(self.reach.dot(l, self.reach)))
+    }
+
     /// `self` where `mask`, else `other`.
     #[inline(always)]
     fn or(self, l: L, mask: L::M, other: Self) -> Self {
         Self {
             reach: V3::select(l, mask, self.reach, other.reach),
-            wi: V3::select(l, mask, self.wi, other.wi),
             radiance: V3::select(l, mask, self.radiance, other.radiance),
-            pdf: l.select(mask, self.pdf, other.pdf),
+            spread: (l.select(mask, self.spread.0, other.spread.0), l.select(mask, self.spread.1, other.spread.1)),
             by_chance: (mask & self.by_chance) | (!mask & other.by_chance),
             surface: l.select_u(mask, self.surface, other.surface),
         }
@@ -99,7 +104,6 @@ fn patch<L: Lanes>(l: L, place: &[L::F; 16], surface: L::U, x: V3<L>, (u, v): (L
     let on_light = triple(place, 0).along(l, u, triple(place, 3)).along(l, v, triple(place, 6));
     let reach = on_light - x;
     let squared = reach.dot(l, reach);
-    let length = l.sqrt(squared);
     let mut facing = -triple(place, 9).dot(l, reach);
     // Report eq. 13: +N·d, its sign mended by taking the magnitude, so that the back shines too.
     if mutant!("eq13_two_sided") {
@@ -107,13 +111,13 @@ fn patch<L: Lanes>(l: L, place: &[L::F; 16], surface: L::U, x: V3<L>, (u, v): (L
     }
     let front = l.lt(l.f(0.0), facing);
     let zero = V3::splat(l, [0.0; 3]);
+    // cosθ / pdf = (n·reach / d) · (facing / d) · area / d²: four times d, two of them to make the cosines.
     // Report eq. 13 read without the square of the distance.
-    let squared = if mutant!("eq13_distance_not_squared") { length } else { squared };
+    let fourth = if mutant!("eq13_distance_not_squared") { squared * l.sqrt(squared) } else { squared * squared };
     Incident {
         reach,
-        wi: reach.scale(l.f(1.0) / length),
         radiance: V3::select(l, front, triple(place, 12), zero),
-        pdf: squared * length / (facing * place[15]),
+        spread: (facing * place[15], fourth),
         by_chance: l.m(true),
         surface,
     }
@@ -134,9 +138,8 @@ fn sphere<L: Lanes>(l: L, place: &[L::F; 16], surface: L::U, x: V3<L>, (u, v): (
     let zero = V3::splat(l, [0.0; 3]);
     Incident {
         reach: wi.scale(to_surface),
-        wi,
         radiance: V3::select(l, outside, triple(place, 12), zero),
-        pdf: warp::cone_pdf(l, opening) / place[15],
+        spread: (opening * place[15] * l.f(2.0 * core::f32::consts::PI), to_surface),
         by_chance: l.m(true),
         surface,
     }
@@ -148,9 +151,8 @@ fn point<L: Lanes>(l: L, place: &[L::F; 16], x: V3<L>) -> Incident<L> {
     let squared = reach.dot(l, reach);
     Incident {
         reach,
-        wi: reach.normalised(l),
-        radiance: triple(place, 12).scale(l.f(1.0) / squared),
-        pdf: l.f(1.0) / place[15],
+        radiance: triple(place, 12),
+        spread: (place[15], squared * l.sqrt(squared)),
         by_chance: l.m(false),
         surface: l.u(NO_SURFACE),
     }
@@ -163,9 +165,8 @@ fn sky<L: Lanes>(l: L, place: &[L::F; 16], normal: V3<L>, (u, v): (L::F, L::F)) 
     let wi = warp::about(l, normal, local).normalised(l);
     Incident {
         reach: wi.scale(l.f(8.0)),
-        wi,
         radiance: triple(place, 12),
-        pdf: warp::cosine_hemisphere_pdf(l, local.z) / place[15],
+        spread: (place[15] * l.f(core::f32::consts::PI), local.z * l.f(8.0)),
         by_chance: l.m(false),
         surface: l.u(NO_SURFACE),
     }

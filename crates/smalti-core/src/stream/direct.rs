@@ -12,7 +12,7 @@ use crate::accel::{Accel, Tracer};
 use crate::geometry::Ray;
 use crate::lanes::{Lanes, V3};
 use crate::light::{Incident, sample::sample, table::LightTable};
-use crate::sampling::{Purpose, pair, warp};
+use crate::sampling::{Purpose, pair};
 use crate::settings::Settings;
 
 /// What the stage needs to know.
@@ -54,11 +54,12 @@ fn one<L: Lanes>(
 ) -> V3<L> {
     let (point, normal) = (vertices.v3(l, ORIGIN, at), vertices.v3(l, DIRECTION, at));
     let incident = choose(l, context, (bounce, number), vertices, at);
-    let cosine = normal.dot(l, incident.wi);
+    let cosine = normal.dot(l, incident.reach);
+    // Lₑ · cosθ / (N·p + q) with q = cosθ/π: as cosθ / p = top / bottom, that is Lₑ · top / (N · bottom + top / π).
+    let (top, bottom) = (cosine * incident.spread.0, incident.spread.1);
+    let by_chance = if context.weighed { l.keep(incident.by_chance, top * l.f(FRAC_1_PI)) } else { l.f(0.0) };
     let count = l.f(context.settings.shadow_rays as f32);
-    let by_chance =
-        if context.weighed { l.keep(incident.by_chance, warp::cosine_hemisphere_pdf(l, cosine)) } else { l.f(0.0) };
-    let irradiance = incident.radiance.scale(cosine / l.mul_add(count, incident.pdf, by_chance));
+    let irradiance = incident.radiance.scale(top / l.mul_add(count, bottom, by_chance));
     // A light point behind the surface, or one that shows its back, has nothing to ask; nor has 0/0 or ∞/∞.
     let brightest = irradiance.max_component(l);
     let asks = vertices.active(l, at)

@@ -127,15 +127,26 @@ impl Single {
         (t, if t < f32::INFINITY { self.prim } else { MISS })
     }
 
-    /// Whether the ray is stopped before `reach`.
-    pub fn occludes(&self, ray: &Ray<One>, reach: f32, target: u32) -> bool {
-        self.surface != target && self.distance(ray) < reach
+    /// Whether the ray is stopped in (0, 1) and `target` is not what stops it.
+    pub fn occludes(&self, ray: &Ray<One>, target: u32) -> bool {
+        if self.surface == target {
+            return false;
+        }
+        match &self.shape {
+            Shape::Sphere([x, y, z, r]) => {
+                let leaves_it = ray.leaves == self.surface;
+                sphere::stops(One, ray, inverse_square(ray), V3::new(*x, *y, *z), *r, leaves_it)
+            }
+            Shape::Polygon { .. } => self.distance(ray) < 1.0,
+        }
     }
 
     fn distance(&self, ray: &Ray<One>) -> f32 {
         let leaves_it = ray.leaves == self.surface;
         match &self.shape {
-            Shape::Sphere([x, y, z, r]) => sphere::hit(One, ray, V3::new(*x, *y, *z), *r, leaves_it),
+            Shape::Sphere([x, y, z, r]) => {
+                sphere::hit(One, ray, inverse_square(ray), V3::new(*x, *y, *z), *r, leaves_it)
+            }
             Shape::Polygon { .. } if leaves_it => f32::INFINITY,
             Shape::Polygon { corners, plane: [nx, ny, nz, offset], low, high } => {
                 if !inside(corners, ray) {
@@ -149,6 +160,10 @@ impl Single {
             }
         }
     }
+}
+
+fn inverse_square(ray: &Ray<One>) -> f32 {
+    1.0 / ray.direction.dot(One, ray.direction)
 }
 
 /// Whether the ray (as a line) passes on one side of all edges.

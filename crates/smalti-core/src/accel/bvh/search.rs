@@ -80,21 +80,21 @@ impl Tree {
         best
     }
 
-    /// Whether something that is not `target` stops the ray before `reach`.
+    /// Whether something that is not `target` stops the ray in (0, 1).
     #[inline(always)]
-    pub fn occluded<L: Lanes>(&self, l: L, lone: &Lone, reach: f32, target: u32, stack: &mut Stack) -> bool {
+    pub fn occluded<L: Lanes>(&self, l: L, lone: &Lone, target: u32, stack: &mut Stack) -> bool {
         let probe = Probe::new(l, lone);
         stack.clear();
         stack.push((f32::NEG_INFINITY, 0));
         while let Some((_, reference)) = stack.pop() {
             if reference & LEAF != 0 {
-                if self.occluded_in(&probe, lone, &self.leaves[(reference & !LEAF) as usize], reach, target) {
+                if self.occluded_in(&probe, lone, &self.leaves[(reference & !LEAF) as usize], target) {
                     return true;
                 }
                 continue;
             }
             let node = &self.nodes[reference as usize];
-            let (begins, met) = probe.boxes(node, reach);
+            let (begins, met) = probe.boxes(node, 1.0);
             push_by_distance(stack, &begins, &node.children, met);
         }
         false
@@ -121,19 +121,19 @@ impl Tree {
     }
 
     #[inline(always)]
-    fn occluded_in<L: Lanes>(&self, probe: &Probe<L>, lone: &Lone, leaf: &Leaf, reach: f32, target: u32) -> bool {
+    fn occluded_in<L: Lanes>(&self, probe: &Probe<L>, lone: &Lone, leaf: &Leaf, target: u32) -> bool {
         let l = probe.l;
         let by_triangle = leaf.packet.is_some_and(
             #[inline(always)]
             |packet| {
-                let (t, hits) = self.packets[packet as usize].hits(l, &probe.ray, reach, target);
-                l.any(hits & l.lt(t, l.f(reach)))
+                let (t, hits) = self.packets[packet as usize].hits(l, &probe.ray, 1.0, target);
+                l.any(hits & l.lt(t, l.f(1.0)))
             },
         );
         by_triangle
             || self.singles[leaf.singles.0 as usize..leaf.singles.1 as usize]
                 .iter()
-                .any(|single| single.occludes(&lone.ray(), reach, target))
+                .any(|single| single.occludes(&lone.ray(), target))
     }
 
     /// Lanes whose ray meets the whole tree's box before `limit`.
