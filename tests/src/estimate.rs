@@ -1,0 +1,105 @@
+//! Renders a world on all cores and says what came out: the image, its mean and how sure that is.
+
+use std::sync::atomic::AtomicU64;
+
+use rayon::prelude::*;
+use smalti_core::film::{Estimate, Film, Image};
+use smalti_core::lanes::Level;
+use smalti_core::render::Renderer;
+use smalti_core::scene::World;
+use smalti_core::settings::Settings;
+
+/// A finished render.
+pub struct Rendered {
+    /// The linear image.
+    pub image: Image,
+    /// Mean of each channel over all pixels.
+    pub mean: [f64; 3],
+    /// Standard error of that mean; infinite with fewer than two rounds.
+    pub standard_error: [f64; 3],
+    /// One estimate a pixel, where there are two rounds.
+    pub pixels: Option<Vec<Estimate>>,
+    /// Paths that the hard cap ended.
+    pub capped: u64,
+}
+
+/// Settings for `width` × `height` pixels and `spp` samples; all else by default.
+pub fn settings(width: u32, height: u32, spp: u32) -> Settings {
+    Settings { width, height, spp, ..Settings::default() }
+}
+
+/// Renders at the best SIMD level.
+///
+/// # Panics
+/// Where the settings do not suit the scene, and when a sample is not finite.
+pub fn render(world: &World, settings: &Settings) -> Rendered {
+    let renderer = Renderer::new(world, settings.clone(), Level::available()[0]).expect("the settings suit the scene");
+    let mut film = Film::new(settings.area(), 8);
+    let progress = AtomicU64::new(0);
+    let works: Vec<_> = film
+        .tiles
+        .par_iter_mut()
+        .map_init(|| renderer.workspace(), |workspace, tile| renderer.advance(tile, settings.spp, workspace, &progress))
+        .collect();
+    for work in &works {
+        assert_eq!(work.rejected, [], "samples that are not finite");
+    }
+    let pixels = film.estimates();
+    let image = film.develop();
+    let (mean, standard_error) = match &pixels {
+        Some(pixels) => total(pixels),
+        None => (image.mean(), [f64::INFINITY; 3]),
+    };
+    Rendered { image, mean, standard_error, pixels, capped: works.iter().map(|work| work.capped).sum() }
+}
+
+/// Mean over pixels and its standard error; pixels are independent.
+fn total(pixels: &[Estimate]) -> ([f64; 3], [f64; 3]) {
+    let count = pixels.len() as f64;
+    let sum = |of: fn(&Estimate) -> [f64; 3]| {
+        pixels.iter().map(of).fold([0.0; 3], |a, b| [a[0] + b[0], a[1] + b[1], a[2] + b[2]])
+    };
+    let mean = sum(|pixel| pixel.mean).map(|x| x / count);
+    (mean, sum(|pixel| pixel.variance).map(|x| x.sqrt() / count))
+}
+
+impl Rendered {
+    /// Asserts the seeded equivalence to a true value: the standard error is at most a fifth of the tolerance (a noisy
+    /// render may not pass by being noisy) and the mean within the tolerance, both relative to `truth`.
+    ///
+    /// # Panics
+    /// When it is not so.
+    pub fn assert_rgb(&self, name: &str, truth: [f64; 3], tolerance: f64) {
+        for channel in 0..3 {
+            let (mean, error, truth) = (self.mean[channel], self.standard_error[channel], truth[channel]);
+            let off = mean / truth - 1.0;
+            let error = error / truth;
+            assert!(error <= tolerance / 5.0, "{name}: standard error {error:.2e} needs {:.2e}", tolerance / 5.0);
+            assert!(
+                off.abs() <= tolerance,
+                "{name}: {mean:.9} is off {truth:.9} by {off:.2e} (se {error:.1e}, tolerance {tolerance:.1e})"
+            );
+        }
+    }
+
+    /// [`assert_rgb`](Self::assert_rgb) for a grey.
+    ///
+    /// # Panics
+    /// When it is not so.
+    pub fn assert_mean(&self, name: &str, truth: f64, tolerance: f64) {
+        self.assert_rgb(name, [truth; 3], tolerance);
+    }
+
+    /// Asserts that every pixel is `truth` to a relative `tolerance`: no noise is allowed for.
+    ///
+    /// # Panics
+    /// When it is not so.
+    pub fn assert_every_pixel(&self, name: &str, truth: f64, tolerance: f64) {
+        for (index, pixel) in self.image.pixels.iter().enumerate() {
+            for &value in pixel {
+                let off = f64::from(value) / truth - 1.0;
+                assert!(off.abs() <= tolerance, "{name}: pixel {index} is {value}, off {truth} by {off:.2e}");
+            }
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! The same scene in another unit of length, or somewhere else: the same bits, as no epsilon is absolute.
+
+use glam::DVec3;
+use smalti_core::scene::World;
+use smalti_core::settings::{Integrator, Settings};
+use smalti_image::hash;
+use smalti_scene::Loaded;
+use smalti_tests::draw::{Way, draw, load, scene_files, settings};
+
+/// Applies `to` to every point of the world, cameras included.
+fn map_points(world: &mut World, to: impl Fn(DVec3) -> DVec3) {
+    let polygons = world.polygons.iter_mut().flat_map(|polygon| &mut polygon.vertices);
+    let meshes = world.meshes.iter_mut().flat_map(|mesh| &mut mesh.vertices);
+    let spheres = world.spheres.iter_mut().map(|sphere| &mut sphere.centre);
+    let lights = world.point_lights.iter_mut().map(|light| &mut light.position);
+    let cameras = world.cameras.iter_mut().flat_map(|camera| [&mut camera.eye, &mut camera.look_at]);
+    for point in polygons.chain(meshes).chain(spheres).chain(lights).chain(cameras) {
+        *point = to(*point);
+    }
+}
+
+/// The world with lengths `factor` times as large, as bright as before.
+fn scaled(world: &World, factor: f64) -> World {
+    let mut world = world.clone();
+    map_points(&mut world, |point| point * factor);
+    world.spheres.iter_mut().for_each(|sphere| sphere.radius *= factor);
+    for light in &mut world.point_lights {
+        light.intensity = light.intensity.map(|channel| channel * factor * factor);
+    }
+    world
+}
+
+/// 2^k.
+fn power_of_two(k: i64) -> f64 {
+    f64::from_bits(((1023 + k) as u64) << 52)
+}
+
+/// Every scene of the repository that loads, with its own settings made small, and its file's name.
+fn scenes() -> Vec<(String, Loaded, Settings)> {
+    let files = scene_files("scenes").into_iter().chain(scene_files("tests/scenes/golden"));
+    let small = |path: std::path::PathBuf| {
+        let loaded = load(&path);
+        let settings = settings(&loaded.settings);
+        let settings = Settings { width: 24, height: 16, crop: None, spp: 2, ..settings };
+        (path.file_name().unwrap().to_string_lossy().into_owned(), loaded, settings)
+    };
+    files.map(small).collect()
+}
+
+#[test]
+fn any_power_of_two_as_unit_of_length() {
+    let scenes = scenes();
+    assert!(scenes.len() >= 5);
+    assert!(scenes.iter().any(|(_, loaded, _)| !loaded.world.point_lights.is_empty()), "intensities are scaled");
+    for (name, Loaded { world, .. }, settings) in scenes {
+        let expected = hash(&draw(&world, &settings, Way::default()));
+        for k in [-40, -20, -1, 1, 20, 40] {
+            let found = hash(&draw(&scaled(&world, power_of_two(k)), &settings, Way::default()));
+            assert_eq!(found, expected, "{name} × 2^{k}");
+        }
+    }
+}
+
+#[test]
+fn any_power_of_two_with_whitted() {
+    for (name, Loaded { world, .. }, settings) in scenes() {
+        let settings = Settings { integrator: Integrator::Whitted, shadow_rays: 2, ..settings };
+        let expected = hash(&draw(&world, &settings, Way::default()));
+        for k in [-40, 1, 40] {
+            let found = hash(&draw(&scaled(&world, power_of_two(k)), &settings, Way::default()));
+            assert_eq!(found, expected, "{name} × 2^{k}");
+        }
+    }
+}
+
+/// The world with every coordinate rounded to a multiple of `grid`: then sums with multiples of it are exact.
+fn on_grid(world: &World, grid: f64) -> World {
+    let mut world = world.clone();
+    map_points(&mut world, |point| (point / grid).round() * grid);
+    world.spheres.iter_mut().for_each(|sphere| sphere.radius = (sphere.radius / grid).round() * grid);
+    world
+}
+
+/// The world moved by `by`, which must be exact.
+fn moved(world: &World, by: DVec3) -> World {
+    let mut world = world.clone();
+    map_points(&mut world, |point| {
+        assert_eq!((point + by) - by, point, "the translation is not exact");
+        point + by
+    });
+    world
+}
+
+#[test]
+fn any_place_that_is_exact() {
+    let grid = power_of_two(-22);
+    let far = power_of_two(26);
+    let places = [
+        DVec3::new(1.0, 0.0, 0.0),
+        DVec3::new(-5.5, 17.25, grid),
+        DVec3::new(1000.0 * grid, -4096.0, 3.0 * grid),
+        DVec3::new(far, -3.0 * far, far / 2.0 + grid),
+    ];
+    for (name, Loaded { world, .. }, settings) in scenes() {
+        let world = on_grid(&world, grid);
+        let expected = hash(&draw(&world, &settings, Way::default()));
+        for place in places {
+            let found = hash(&draw(&moved(&world, place), &settings, Way::default()));
+            assert_eq!(found, expected, "{name} moved by {place}");
+        }
+        let both = moved(&scaled(&world, 4.0), places[3] * 4.0);
+        assert_eq!(hash(&draw(&both, &settings, Way::default())), expected, "{name} scaled and moved");
+    }
+}

@@ -1,0 +1,9 @@
+//! One image, bit for bit, whatever the machine does (promise 1) and at whatever scale the scene is built (promise 3).
+
+mod accel;
+mod frame;
+mod hidden;
+mod rays;
+mod samples;
+mod shapes;
+mod work;
