@@ -87,7 +87,7 @@ fn agree(name: &str, scene: &Scene, count: usize) {
         let t = f32::from_bits(t);
         // At the very end of the ray the two questions may round differently.
         let same = stopped == (t < 1.0) || (t - 1.0).abs() < 1e-4;
-        assert!(rays.target[at] != u32::MAX || same, "{name}: {}", rays.show(at));
+        assert!(rays.target[at] != u32::MAX || same, "{name}: {} hits at {t}", rays.show(at));
         assert!(
             prim == MISS || beside(scene, prim, &rays, at, t) < 1e-4,
             "{name}: {} hits {prim} at {t}",

@@ -121,7 +121,7 @@ pub fn rays(scene: &Scene, count: usize) -> Rays {
                 let origin = from.point - from.normal * 2e-6;
                 rays.push(origin, to.point - origin, from.surface, to.surface);
             }
-            5 => rays.push(from.point, to.point - from.point, none, none),
+            5 => rays.push(from.point, to.point - from.point, none, to.surface),
             6 => {
                 let axis = [Vec3::X, Vec3::Y, Vec3::Z][dice.below(3)];
                 let sign = if dice.unit() < 0.5 { 1.0 } else { -1.0 };

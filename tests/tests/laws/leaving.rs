@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use smalti_core::accel::{Accel, MISS, Tracer};
-use smalti_core::geometry::{Ray, offset};
+use smalti_core::geometry::Ray;
 use smalti_core::lanes::{One, V3};
 use smalti_core::light::table::NO_SURFACE;
 use smalti_core::scene::{Scene, World, compile};
@@ -40,7 +40,7 @@ fn shaded(scene: &Scene, accel: &Accel, from: DVec3, goal: DVec3) -> Option<(sur
 /// What a ray from a hit, along `direction` to the side of `side`, hits next.
 fn next(tracer: &mut Tracer<'_, One>, hit: &surface::Hit<One>, side: V3<One>, direction: DVec3) -> (f32, u32) {
     let direction = V3::splat(One, direction.as_vec3().to_array());
-    let ray = Ray::new(One, offset::leave(One, hit.point, side), direction, hit.surface);
+    let ray = Ray::new(One, hit.leave(One, side), direction, hit.surface);
     tracer.nearest(One, &ray, true)
 }
 

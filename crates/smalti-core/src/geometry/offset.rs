@@ -7,11 +7,12 @@ use crate::mutant::mutant;
 /// twice the γ(7) of pbrt's analysis, plus the neighbour's share.
 const ERROR: f32 = 24.0 / 16_777_216.0;
 
-/// The point from where rays leave to the side of `normal`: moved out by the bound on its error.
+/// The point from where rays leave to the side of `normal`: moved out by the bound on its error. `scale` is the largest
+/// coordinate that the point was made from.
 #[inline(always)]
-pub fn leave<L: Lanes>(l: L, point: V3<L>, normal: V3<L>) -> V3<L> {
+pub fn leave<L: Lanes>(l: L, point: V3<L>, scale: L::F, normal: V3<L>) -> V3<L> {
     let error = if mutant!("any_positive_distance") { 0.0 } else { ERROR };
-    point.along(l, point.max_abs(l) * l.f(error), normal)
+    point.along(l, scale * l.f(error), normal)
 }
 
 /// A hit at distance `t` of a ray, moved onto the plane n·x = d that it hit.

@@ -2,7 +2,6 @@
 
 use super::{DIRECTION, Scattered, Stream, THROUGHPUT, mirror, surface};
 use crate::bsdf::fresnel::{Boundary, boundary, reflectance};
-use crate::geometry::offset;
 use crate::lanes::{Lanes, V3};
 use crate::mutant::mutant;
 use crate::sampling::{Purpose, pair};
@@ -82,7 +81,7 @@ impl<L: Lanes> Crossing<L> {
         // Report eq. 9: 1 − R "is the radiance", without the n² of the narrower solid angle.
         let squeezed = if mutant!("eq9_no_n_squared") { so_far } else { so_far * eta * eta };
         Scattered {
-            origin: offset::leave(l, self.hit.point, leaves_on),
+            origin: self.hit.leave(l, leaves_on),
             direction,
             throughput,
             leaves: self.hit.surface,

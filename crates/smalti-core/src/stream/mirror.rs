@@ -1,7 +1,6 @@
 //! Perfect reflection (report eq. 3).
 
 use super::{DIRECTION, Scattered, Stream, THROUGHPUT, roulette, surface};
-use crate::geometry::offset;
 use crate::lanes::{Lanes, V3};
 use crate::sampling::{Purpose, pair};
 use crate::scene::Scene;
@@ -33,7 +32,7 @@ pub fn run<L: Lanes>(l: L, scene: &Scene, ending: Ending, bounce: u32, hits: &St
         };
         let side = V3::select(l, hit.outside, hit.normal, -hit.normal);
         let rays = Scattered {
-            origin: offset::leave(l, hit.point, side),
+            origin: hit.leave(l, side),
             direction: reflect(l, incoming, hit.normal),
             throughput,
             leaves: hit.surface,

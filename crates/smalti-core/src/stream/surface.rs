@@ -18,6 +18,16 @@ pub struct Hit<L: Lanes> {
     pub colour: V3<L>,
     /// Surface id.
     pub surface: L::U,
+    /// Largest coordinate that the point was made from: its error is relative to this.
+    scale: L::F,
+}
+
+impl<L: Lanes> Hit<L> {
+    /// Where rays start that leave to the side of `side`, the normal or its opposite.
+    #[inline(always)]
+    pub fn leave(&self, l: L, side: V3<L>) -> V3<L> {
+        offset::leave(l, self.point, self.scale, side)
+    }
 }
 
 /// The hits of a packet.
@@ -30,13 +40,16 @@ pub fn hit<L: Lanes>(l: L, scene: &Scene, hits: &Stream, at: usize) -> Hit<L> {
     let geometry = V3::new(x, y, z);
     let is_sphere = !l.lt_u(surface, l.u(scene.planes));
     let (mut on_surface, mut normal) = (offset::onto_plane(l, point, geometry, w), geometry);
+    let mut scale = on_surface.max_abs(l);
     if l.any(is_sphere) {
         let (on_sphere, outward) = offset::onto_sphere(l, point, geometry, w);
         on_surface = V3::select(l, is_sphere, on_sphere, on_surface);
         normal = V3::select(l, is_sphere, outward, normal);
+        // A sphere's point is made from its centre, which may be far when the point is near the origin.
+        scale = l.select(is_sphere, geometry.max_abs(l) + w, scale);
     }
     let outside = l.lt(normal.dot(l, direction), l.f(0.0));
-    Hit { point: on_surface, normal, outside, colour: V3::new(r, g, b), surface }
+    Hit { point: on_surface, normal, outside, colour: V3::new(r, g, b), surface, scale }
 }
 
 /// Turns the hits of a diffuse stream into vertices, in place.
@@ -45,7 +58,7 @@ pub fn run<L: Lanes>(l: L, scene: &Scene, hits: &mut Stream) {
     for at in (0..hits.len()).step_by(L::WIDTH) {
         let hit = hit(l, scene, hits, at);
         let normal = V3::select(l, hit.outside, hit.normal, -hit.normal);
-        hits.set_v3(l, ORIGIN, at, offset::leave(l, hit.point, normal));
+        hits.set_v3(l, ORIGIN, at, hit.leave(l, normal));
         hits.set_v3(l, DIRECTION, at, normal);
         hits.set_v3(l, THROUGHPUT, at, hits.v3(l, THROUGHPUT, at) * hit.colour);
         hits.set_u(l, LEAVES, at, hit.surface);
