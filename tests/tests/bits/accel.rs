@@ -108,7 +108,6 @@ fn beside(scene: &Scene, prim: u32, rays: &Rays, at: usize, t: f32) -> f32 {
 }
 
 #[test]
-#[ignore = "open bug: rays exactly in the plane of a face or box"]
 fn a_ray_in_the_plane_of_a_face_does_not_hit_it_from_beside() {
     let scene = shapes::of_file("scenes/hexroom.toml");
     let prims: Vec<u32> = (0..scene.shades.len() as u32).collect();
@@ -129,21 +128,18 @@ fn a_ray_in_the_plane_of_a_face_does_not_hit_it_from_beside() {
 }
 
 #[test]
-#[ignore = "open bug: rays exactly in the plane of a face or box"]
 fn list_and_tree_in_the_rooms() {
     agree("hexroom", &shapes::of_file("scenes/hexroom.toml"), 200_000);
     agree("cornell", &shapes::of_file("scenes/cornell.toml"), 200_000);
 }
 
 #[test]
-#[ignore = "open bug: rays exactly in the plane of a face or box"]
 fn list_and_tree_in_a_mesh() {
     agree("blob", &shapes::of_file("tests/scenes/golden/mesh_in_a_tree.toml"), 100_000);
     agree("flat grid", &shapes::flat_grid(24), 50_000);
 }
 
 #[test]
-#[ignore = "open bug: rays exactly in the plane of a face or box"]
 fn list_and_tree_in_soups_of_triangles() {
     for seed in 0..4 {
         agree("shared corners", &shapes::shared_corners(seed), 40_000);
@@ -160,7 +156,6 @@ fn list_and_tree_in_soups_of_spheres() {
 }
 
 #[test]
-#[ignore = "open bug: rays exactly in the plane of a face or box"]
 fn rays_that_are_no_rays_hit_nothing_or_the_same() {
     let scene = shapes::of_file("scenes/hexroom.toml");
     let mut rays = Rays::default();

@@ -152,7 +152,8 @@ impl List {
                 right = right & positive;
             }
         }
-        left | right
+        // Both: the ray runs in the plane of the face, where it hits nothing.
+        (left | right) & !(left & right)
     }
 
     /// 1 / (d · d), where there are spheres to need it.

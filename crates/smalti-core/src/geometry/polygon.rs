@@ -39,12 +39,14 @@ pub fn within<L: Lanes>(l: L, ray: &Ray<L>, normal: V3<L>, offset: L::F) -> (L::
 }
 
 /// `t` clamped to where the ray is inside the box: a grazing ray's distance is ill-conditioned, but the hit cannot lie
-/// outside the face's box. The same arithmetic as the tree's box test, so the tree never culls a hit of the list.
+/// outside the face's box; ∞ where the ray passes beside the box, or runs along the plane. The same arithmetic as the
+/// tree's box test, so the tree never culls a hit of the list.
 #[inline(always)]
 pub fn clamp_to_box<L: Lanes>(l: L, ray: &Ray<L>, t: L::F, low: V3<L>, high: V3<L>) -> L::F {
     let inverse = inverse_direction(l, ray.direction);
-    let (near, far) = slab(l, ray.origin, inverse, low, high);
-    l.max(l.min(t, far), near)
+    let (near, far) = slab(l, around(l, ray.origin), inverse, low, high);
+    let never = l.f(f32::INFINITY);
+    l.select(l.le(near, far) & l.lt(l.abs(t), never), l.max(l.min(t, far), near), never)
 }
 
 /// 1 / d with ±MAX in place of ±∞, so that 0 · ∞ cannot arise.
@@ -59,12 +61,21 @@ fn inverse<L: Lanes>(l: L, x: L::F) -> L::F {
     l.select(tiny, l.copysign(l.f(f32::MAX), x), l.f(1.0) / x)
 }
 
+/// The low and high corner of a box around an origin that is wider than what rounding can make of a ray's place: with
+/// it, [`slab`] misses no box whose content the ray is found to hit, and no 0 · MAX arises where the origin is in the
+/// plane of a side.
+#[inline(always)]
+pub fn around<L: Lanes>(l: L, origin: V3<L>) -> [V3<L>; 2] {
+    let e = l.max(origin.max_abs(l), l.f(1.0)) * l.f(1.0 / 524_288.0);
+    [V3::new(origin.x - e, origin.y - e, origin.z - e), V3::new(origin.x + e, origin.y + e, origin.z + e)]
+}
+
 /// Interval of t inside the box (low, high): monotone in the box, so a larger box never gives a smaller interval.
 #[inline(always)]
-pub fn slab<L: Lanes>(l: L, origin: V3<L>, inverse: V3<L>, low: V3<L>, high: V3<L>) -> (L::F, L::F) {
-    let (x0, x1) = ((low.x - origin.x) * inverse.x, (high.x - origin.x) * inverse.x);
-    let (y0, y1) = ((low.y - origin.y) * inverse.y, (high.y - origin.y) * inverse.y);
-    let (z0, z1) = ((low.z - origin.z) * inverse.z, (high.z - origin.z) * inverse.z);
+pub fn slab<L: Lanes>(l: L, [before, behind]: [V3<L>; 2], inverse: V3<L>, low: V3<L>, high: V3<L>) -> (L::F, L::F) {
+    let (x0, x1) = ((low.x - behind.x) * inverse.x, (high.x - before.x) * inverse.x);
+    let (y0, y1) = ((low.y - behind.y) * inverse.y, (high.y - before.y) * inverse.y);
+    let (z0, z1) = ((low.z - behind.z) * inverse.z, (high.z - before.z) * inverse.z);
     let near = l.max(l.min(x0, x1), l.max(l.min(y0, y1), l.min(z0, z1)));
     let far = l.min(l.max(x0, x1), l.min(l.max(y0, y1), l.max(z0, z1)));
     (near, far)

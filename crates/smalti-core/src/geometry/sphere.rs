@@ -38,14 +38,14 @@ impl<L: Lanes> Meeting<L> {
 /// `inverse` is 1 / (d · d) of the ray's direction.
 ///
 /// A ray that leaves this very sphere starts on it, moved to one side by more than its error. From outside it cannot
-/// meet it again; from inside the far root is the way out. The signs of roots near 0 are never asked.
+/// meet it again. From inside one root is 0 by construction and only the other is asked for: the whole chord.
 #[inline(always)]
 pub fn hit<L: Lanes>(l: L, ray: &Ray<L>, inverse: L::F, centre: V3<L>, radius: L::F, leaves_it: L::M) -> L::F {
     let never = l.f(f32::INFINITY);
     let zero = l.f(0.0);
     let Meeting { from_centre: f, a, b, discriminant } = Meeting::new(l, ray, inverse, centre, radius);
     let meets = l.lt(zero, discriminant);
-    if !l.any(meets) {
+    if !l.any(meets | leaves_it) {
         return never;
     }
     let root = l.sqrt(l.max(a * discriminant, zero));
@@ -54,11 +54,13 @@ pub fn hit<L: Lanes>(l: L, ray: &Ray<L>, inverse: L::F, centre: V3<L>, radius: L
     let (t0, t1) = (c / q, q * inverse);
     let (near, far) = (l.min(t0, t1), l.max(t0, t1));
     // Report §2.13: "choose the smaller t", also where it lies behind.
-    let first = if mutant!("smaller_root") { near } else { l.select(l.lt(zero, near) & !leaves_it, near, far) };
-    let gone = leaves_it & l.lt(zero, c);
+    let first = if mutant!("smaller_root") { near } else { l.select(l.lt(zero, near), near, far) };
+    let leaves_it = if mutant!("smaller_root") { l.m(false) } else { leaves_it };
     // Report §2.12: any t > 0 will do.
-    let gone = gone & l.m(!mutant!("any_positive_distance"));
-    l.select(meets & !gone & l.lt(zero, first), first, never)
+    let leaves_it = leaves_it & l.m(!mutant!("any_positive_distance"));
+    let chord = l.select(l.lt(zero, c), never, (b + b) * inverse);
+    let t = l.select(leaves_it, chord, l.select(meets, first, never));
+    l.select(l.lt(zero, t), t, never)
 }
 
 /// Whether the ray meets the sphere in (0, 1), in units of its direction: without a root, as no distance is asked for.
@@ -71,9 +73,11 @@ pub fn stops<L: Lanes>(l: L, ray: &Ray<L>, inverse: L::F, centre: V3<L>, radius:
     let ends_inside = l.lt(end.dot(l, end), radius * radius);
     let starts_outside = l.lt(radius * radius, f.dot(l, f));
     // From outside: it comes in before the end. From inside: it is out at the end.
-    let enters = starts_outside & !leaves_it & meets & l.lt(zero, b) & (l.lt(b, a) | ends_inside);
+    let ahead = l.lt(zero, b);
+    let enters = starts_outside & meets & ahead & (l.lt(b, a) | ends_inside);
     let exits = !starts_outside & !ends_inside;
-    enters | exits
+    let across = !starts_outside & ahead & l.lt(b + b, a);
+    (leaves_it & across) | (!leaves_it & (enters | exits))
 }
 
 #[cfg(test)]

@@ -59,7 +59,7 @@ impl Packet {
         let left = l.le(zero, ab) & l.le(zero, bc) & l.le(zero, ca);
         let right = l.le(ab, zero) & l.le(bc, zero) & l.le(ca, zero);
         let surface = l.load_u(&self.surface);
-        let inside = (left | right) & !l.eq_u(surface, ray.leaves) & !l.eq_u(surface, l.u(target));
+        let inside = (left | right) & !(left & right) & !l.eq_u(surface, ray.leaves) & !l.eq_u(surface, l.u(target));
         if !l.any(inside) {
             return (zero, inside);
         }
@@ -72,7 +72,7 @@ impl Packet {
             let (low, high) = bounds(l, a, b, c);
             t = l.select(grazing, polygon::clamp_to_box(l, ray, t, low, high), t);
         }
-        (t, inside & l.lt(zero, t) & l.le(t, l.f(limit)))
+        (t, inside & l.lt(zero, t) & l.le(t, l.f(limit)) & l.lt(t, l.f(f32::INFINITY)))
     }
 
     /// Primitive in a lane.
@@ -178,5 +178,5 @@ fn inside(corners: &[[f32; 3]], ray: &Ray<One>) -> bool {
         right &= side <= 0.0;
         from = to;
     }
-    left || right
+    left != right
 }

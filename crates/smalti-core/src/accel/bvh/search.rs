@@ -21,6 +21,7 @@ struct Probe<L: Lanes> {
     l: L,
     ray: Ray<L>,
     inverse: V3<L>,
+    around: [V3<L>; 2],
     /// How far past the nearest hit the search looks, in units of the direction.
     slack: f32,
     /// What rounding can make of two box distances.
@@ -40,6 +41,7 @@ impl<L: Lanes> Probe<L> {
             l,
             ray: Ray::new(l, origin, direction, l.u(lone.leaves)),
             inverse: polygon::inverse_direction(l, direction),
+            around: polygon::around(l, origin),
             slack: unit * SLACK,
             rounding: l.f(unit / 1_048_576.0),
         }
@@ -50,7 +52,7 @@ impl<L: Lanes> Probe<L> {
     fn boxes(&self, node: &Node, limit: f32) -> ([f32; WIDTH], u64) {
         let l = self.l;
         let corner = |side: &[[f32; WIDTH]; 3]| V3::<L>::new(l.load(&side[0]), l.load(&side[1]), l.load(&side[2]));
-        let (near, far) = polygon::slab(l, self.ray.origin, self.inverse, corner(&node.low), corner(&node.high));
+        let (near, far) = polygon::slab(l, self.around, self.inverse, corner(&node.low), corner(&node.high));
         let met = l.le(near, far + self.rounding) & l.le(near, l.f(limit + self.slack)) & l.le(l.f(-self.slack), far);
         let mut begins = [0.0; WIDTH];
         l.store(near, &mut begins);
@@ -140,7 +142,8 @@ impl Tree {
     #[inline(always)]
     pub fn meets<L: Lanes>(&self, l: L, ray: &Ray<L>, limit: L::F) -> L::M {
         let inverse = polygon::inverse_direction(l, ray.direction);
-        let (near, far) = polygon::slab(l, ray.origin, inverse, V3::splat(l, self.low), V3::splat(l, self.high));
+        let (near, far) =
+            polygon::slab(l, polygon::around(l, ray.origin), inverse, V3::splat(l, self.low), V3::splat(l, self.high));
         let unit = l.max(ray.origin.max_abs(l), l.f(1.0)) / ray.major;
         let slack = unit * l.f(SLACK);
         l.le(near, far + unit * l.f(1.0 / 1_048_576.0)) & l.le(near, limit + slack) & l.le(-slack, far)
