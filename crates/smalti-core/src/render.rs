@@ -208,7 +208,7 @@ impl Renderer {
             dispatch!(self.token, l => generate::run(l, what, pixels, (sample, first), rays));
             first = rays.len();
         }
-        debug_assert!(first <= MOST_SLOTS);
+        assert!(first <= MOST_SLOTS);
         slots.reset(first);
     }
 

@@ -72,18 +72,27 @@ impl Level {
     }
 }
 
+/// A function of its own for a kernel at the levels that need no more of the machine than the rest of the program (plain
+/// and, on x86-64, SSE2): all of them inlined into whoever dispatches made one function that took LLVM minutes.
+#[inline(never)]
+pub(crate) fn apart<R>(kernel: impl FnOnce() -> R) -> R {
+    kernel()
+}
+
 /// Runs `$body` with `$l` bound to the lanes of a level (its token as [`Level::token`] gives it): one instance a level,
 /// chosen at run time.
 macro_rules! dispatch {
     ($token:expr, $l:ident => $body:expr) => {
         match $token {
-            None => {
+            None => $crate::lanes::level::apart(|| {
                 let $l = $crate::lanes::One;
                 $body
-            }
-            Some(token) => fearless_simd::dispatch!(token, simd => {
-                let $l = $crate::lanes::Native(simd);
-                $body
+            }),
+            Some(token) => $crate::lanes::level::apart(|| {
+                fearless_simd::dispatch!(token, simd => {
+                    let $l = $crate::lanes::Native(simd);
+                    $body
+                })
             }),
         }
     };

@@ -106,7 +106,7 @@ impl Compiler<'_> {
         light: Option<u32>,
         origin: Origin,
     ) {
-        debug_assert_eq!(prim as usize, self.scene.shades.len());
+        assert_eq!(prim as usize, self.scene.shades.len());
         let (class, colour) = class_of(&self.world.materials[material]);
         let [x, y, z, w] = geometry;
         let [r, g, b] = colour;
