@@ -78,6 +78,7 @@ pub struct Workspace {
     dielectric: Stream,
     emitters: Stream,
     escaped: Stream,
+    shadows: direct::Shadows,
 }
 
 impl Renderer {
@@ -130,6 +131,7 @@ impl Renderer {
             dielectric: has(|stage| matches!(stage, Stage::Dielectric(..) | Stage::Split(_))),
             emitters: has(|stage| *stage == Stage::Emission),
             escaped: has(|stage| *stage == Stage::Environment),
+            shadows: direct::Shadows::default(),
         }
     }
 
@@ -214,7 +216,7 @@ impl Renderer {
 
     /// Runs one stage over its stream: the one place where stages are told apart.
     fn perform(&self, stage: Stage, bounce: u32, ends: bool, workspace: &mut Workspace) {
-        let Workspace { slots, rays, next, diffuse, mirror, dielectric, emitters, escaped, .. } = workspace;
+        let Workspace { slots, rays, next, diffuse, mirror, dielectric, emitters, escaped, shadows, .. } = workspace;
         let (scene, settings, token) = (&self.scene, &self.settings, self.token);
         match stage {
             Stage::Intersect => dispatch!(token, l => intersect::run(l, &self.plan.everything, rays)),
@@ -228,9 +230,9 @@ impl Renderer {
             }
             Stage::Surface => dispatch!(token, l => surface::run(l, scene, diffuse)),
             Stage::Direct { weighed } => {
-                let occluders = &self.plan.occluders;
-                let context = direct::Context { lights: &scene.lights, occluders, settings, weighed };
-                dispatch!(token, l => direct::run(l, &context, bounce, diffuse, slots));
+                let Plan { occluders, parts, .. } = &self.plan;
+                let context = direct::Context { lights: &scene.lights, occluders, parts, settings, weighed };
+                dispatch!(token, l => direct::run(l, &context, bounce, diffuse, shadows, slots));
             }
             Stage::Diffuse => dispatch!(token, l => diffuse::run(l, settings.sampler, bounce, diffuse, next)),
             Stage::Mirror(ending) => {

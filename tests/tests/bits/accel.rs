@@ -2,6 +2,7 @@
 //! several at that distance, the primitive of the lowest number. Checked against lists of a few primitives each.
 
 use glam::Vec3;
+use smalti_core::accel::cones::{Cones, Parts};
 use smalti_core::accel::{Accel, List, MISS, Tracer};
 use smalti_core::geometry::Ray;
 use smalti_core::lanes::{Lanes, Native, One, V3};
@@ -80,6 +81,7 @@ fn agree(name: &str, scene: &Scene, count: usize) {
         first_difference(&format!("{name}, {kind}"), &expected, &ask_best(&accel, &rays), &rays);
         first_difference(&format!("{name}, {kind}, scalar"), &expected, &ask(One, &accel, &rays), &rays);
     }
+    none_cleared_that_is_stopped(name, scene, &rays, &prims, &expected);
     let hits = expected.iter().filter(|answer| answer.1 != MISS).count();
     let stopped = expected.iter().filter(|answer| answer.2).count();
     assert!(hits > count / 4 && stopped > count / 20, "{name}: only {hits} of {count} rays hit, {stopped} are stopped");
@@ -93,6 +95,23 @@ fn agree(name: &str, scene: &Scene, count: usize) {
             "{name}: {} hits {prim} at {t}",
             rays.show(at)
         );
+    }
+}
+
+/// Lanes of the packet at `at` that the cones do not clear.
+fn doubtful<L: Lanes>(l: L, cones: &mut Cones<'_>, rays: &Rays, at: usize) -> u64 {
+    let [x, y, z, dx, dy, dz] = rays.columns.each_ref();
+    cones.look_from(l, V3::new(l.load(&x[at..]), l.load(&y[at..]), l.load(&z[at..])));
+    let reach = V3::new(l.load(&dx[at..]), l.load(&dy[at..]), l.load(&dz[at..]));
+    l.bitmask(cones.may_stop(l, reach))
+}
+
+/// No ray that something stops is outside all cones.
+fn none_cleared_that_is_stopped(name: &str, scene: &Scene, rays: &Rays, prims: &[u32], expected: &[Answer]) {
+    let parts = Parts::new(scene, prims);
+    let mut cones = Cones::new(&parts);
+    for (at, answer) in expected.iter().enumerate().filter(|(_, answer)| answer.2) {
+        assert!(doubtful(One, &mut cones, rays, at) == 1, "{name}: {} is stopped by {}", rays.show(at), answer.1);
     }
 }
 

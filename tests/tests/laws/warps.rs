@@ -100,7 +100,7 @@ fn densities_integrate_to_1() {
 fn independent_numbers_are_uniform_over_pixels_and_over_samples() {
     let draw = |key: u32, sample: u32| {
         let keys = Keys::<One> { key, index: sample.reverse_bits() };
-        let (u, v) = pair(One, SamplerKind::Independent, keys, 1, Purpose::Bsdf, (0, 0));
+        let (u, v) = pair(One, SamplerKind::Independent, keys, 1, Purpose::Bsdf);
         (f64::from(u), f64::from(v))
     };
     let over_pixels = (0..SAMPLES).map(|k| draw(pixel_key(1, k % 1000, k / 1000, 0), 0));
@@ -109,7 +109,7 @@ fn independent_numbers_are_uniform_over_pixels_and_over_samples() {
     assert_fits("independent numbers over samples", over_samples, uniform);
     let over_scrambles = (0..SAMPLES).map(|k| {
         let keys = Keys::<One> { key: pixel_key(2, k % 1000, k / 1000, 5), index: 3u32.reverse_bits() };
-        let (u, v) = pair(One, SamplerKind::Sobol, keys, 2, Purpose::LightPoint, (0, 0));
+        let (u, v) = pair(One, SamplerKind::Sobol, keys, 2, Purpose::LightPoint);
         (f64::from(u), f64::from(v))
     });
     assert_fits("one Sobol point over its scrambles", over_scrambles, uniform);

@@ -45,8 +45,8 @@ struct ListSphere {
 
 /// Edge signs and projected corners of one packet of rays; made once for a stream.
 struct Scratch<L: Lanes> {
-    corners: [(L::F, L::F); CAPACITY],
-    signs: [(L::M, L::M); CAPACITY],
+    corners: Vec<(L::F, L::F)>,
+    signs: Vec<(L::M, L::M)>,
 }
 
 impl List {
@@ -121,7 +121,8 @@ impl List {
     /// Buffers for the packets of one stream.
     #[inline(always)]
     fn scratch<L: Lanes>(&self, l: L) -> Scratch<L> {
-        Scratch { corners: [(l.f(0.0), l.f(0.0)); CAPACITY], signs: [(l.m(false), l.m(false)); CAPACITY] }
+        let corners = vec![(l.f(0.0), l.f(0.0)); self.corners.len()];
+        Scratch { corners, signs: vec![(l.m(false), l.m(false)); self.edges.len()] }
     }
 
     /// Projects the corners and takes the signs of the edges.
@@ -132,7 +133,7 @@ impl List {
         }
         let zero = l.f(0.0);
         for (edge, signs) in self.edges.iter().zip(&mut scratch.signs) {
-            let [a, b] = edge.map(|i| scratch.corners[usize::from(i) % CAPACITY]);
+            let [a, b] = edge.map(|i| scratch.corners[usize::from(i)]);
             let side = ray::edge(a, b);
             *signs = (l.le(zero, side), l.le(side, zero));
         }
@@ -143,7 +144,7 @@ impl List {
     fn inside<L: Lanes>(&self, face: &ListFace, scratch: &Scratch<L>, lanes: L::M) -> L::M {
         let (mut left, mut right) = (lanes, lanes);
         for side in &self.sides[face.sides.0 as usize..face.sides.1 as usize] {
-            let (positive, negative) = scratch.signs[usize::from(side >> 1) % CAPACITY];
+            let (positive, negative) = scratch.signs[usize::from(side >> 1)];
             if side & 1 == 0 {
                 left = left & positive;
                 right = right & negative;

@@ -3,6 +3,7 @@
 //! the one of the lowest primitive number.
 
 pub mod bvh;
+pub mod cones;
 pub mod list;
 pub mod occluders;
 

@@ -66,6 +66,7 @@ pub trait Lanes: Copy {
     /// `table[index]` in every lane.
     fn gather_u(self, table: &[u32], index: Self::U) -> Self::U;
     /// One record a lane, transposed: element `k` of every lane's record in the `k`-th result.
+    /// `N` is a power of two.
     fn gather_record<const N: usize>(self, table: &[[f32; N]], index: Self::U) -> [Self::F; N];
 
     /// The bits of `x`.

@@ -78,18 +78,23 @@ macro_rules! lanes {
             }
             #[inline(always)]
             fn gather_record<const N: usize>(self, table: &[[f32; N]], index: Self::U) -> [Self::F; N] {
-                let mut columns = [[0.0f32; 16]; N];
+                const { assert!(N.is_power_of_two()) }
+                let mut rows = [[0.0f32; N]; 16];
                 for i in 0..Self::WIDTH {
-                    let record = &table[index[i] as usize];
-                    for k in 0..N {
-                        columns[k][i] = record[k];
+                    rows[i] = table[index[i] as usize];
+                }
+                let mut columns = [self.f(0.0); N];
+                for (k, column) in columns.iter_mut().enumerate() {
+                    *column = self.load(&rows.as_flattened()[k * Self::WIDTH..]);
+                }
+                // Each round takes the elements at even places to the front half: a rotation of the place's bits.
+                for _ in 0..N.ilog2() {
+                    let mixed = columns;
+                    for k in 0..N / 2 {
+                        (columns[k], columns[N / 2 + k]) = mixed[2 * k].deinterleave(mixed[2 * k + 1]);
                     }
                 }
-                let mut transposed = [self.f(0.0); N];
-                for k in 0..N {
-                    transposed[k] = self.load(&columns[k]);
-                }
-                transposed
+                columns
             }
             #[inline(always)]
             fn bits(self, x: Self::F) -> Self::U {

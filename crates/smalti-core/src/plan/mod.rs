@@ -5,6 +5,7 @@
 
 mod reasons;
 
+use crate::accel::cones::Parts;
 use crate::accel::{Accel, occluders};
 use crate::light::table::Kind;
 use crate::scene::{Class, Scene};
@@ -79,6 +80,8 @@ pub struct Plan {
     pub everything: Accel,
     /// What can stop a shadow ray.
     pub occluders: Accel,
+    /// The parts it falls into.
+    pub parts: Parts,
     /// The decisions with their reasons.
     pub decisions: Vec<Decision>,
 }
@@ -92,10 +95,11 @@ impl Plan {
         check(scene, settings)?;
         let prims: Vec<u32> = (0..scene.shades.len() as u32).collect();
         let everything = Accel::new(scene, &prims);
-        let occluders = Accel::new(scene, &occluders::of(scene));
+        let in_the_way = occluders::of(scene);
+        let (occluders, parts) = (Accel::new(scene, &in_the_way), Parts::new(scene, &in_the_way));
         let (stages, columns) = (stages(scene, settings), columns(scene, settings));
         let max_bounces = settings.max_bounces.unwrap_or(MOST_BOUNCES).min(MOST_BOUNCES);
-        let mut plan = Self { stages, columns, max_bounces, everything, occluders, decisions: Vec::new() };
+        let mut plan = Self { stages, columns, max_bounces, everything, occluders, parts, decisions: Vec::new() };
         plan.decisions = reasons::of(&plan, scene, settings);
         Ok(plan)
     }

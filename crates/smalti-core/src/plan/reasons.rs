@@ -45,8 +45,10 @@ fn accelerator(plan: &Plan, scene: &Scene) -> Decision {
 
 fn occluders(plan: &Plan, scene: &Scene) -> Option<Decision> {
     plan.has(|stage| matches!(stage, Stage::Direct { .. })).then(|| {
-        let choice = format!("{} of {} primitives", plan.occluders.len(), scene.shades.len());
-        let reason = "the others have everything on one side, or all lights in their plane: they stop no shadow ray";
+        let parts = counted(plan.parts.len(), "part");
+        let choice = format!("{} of {} primitives, in {parts}", plan.occluders.len(), scene.shades.len());
+        let reason = "the others have everything on one side, or all lights in their plane: they stop no shadow ray; \
+                      a ray is traced where it may meet the bounding sphere of a part";
         decision("occluders", choice, reason, 0)
     })
 }

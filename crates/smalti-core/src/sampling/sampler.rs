@@ -40,25 +40,44 @@ pub fn pixel_key(seed: u64, x: u32, y: u32, round: u32) -> u32 {
     h
 }
 
-/// Two numbers in [0, 1) for `purpose` at `bounce`. `number` of 2^`log2_numbers` sets is drawn where a vertex needs
-/// several (shadow rays); together with the samples of the round they stay one well spread set.
+/// Two numbers in [0, 1) for `purpose` at `bounce`.
 #[inline(always)]
-pub fn pair<L: Lanes>(
-    l: L,
+pub fn pair<L: Lanes>(l: L, kind: SamplerKind, keys: Keys<L>, bounce: u32, purpose: Purpose) -> (L::F, L::F) {
+    Fan::new(l, kind, keys, bounce, purpose, 1).pair(l, 0)
+}
+
+/// The numbers of a vertex that asks for several pairs (shadow rays). Together with those of the other samples of the
+/// round they are one well spread set.
+#[derive(Clone, Copy)]
+pub struct Fan<L: Lanes> {
     kind: SamplerKind,
-    keys: Keys<L>,
-    bounce: u32,
-    purpose: Purpose,
-    (number, log2_numbers): (u32, u32),
-) -> (L::F, L::F) {
-    let salt = mix(bounce.wrapping_mul(8).wrapping_add(purpose as u32).wrapping_add(0x51ed_270b));
-    let seed = mix_lanes(l, keys.key ^ l.u(salt));
-    let index = l.shr_by(keys.index, log2_numbers) | l.u(number.reverse_bits());
-    let (a, b) = match kind {
-        SamplerKind::Sobol => sobol::scrambled_pair(l, index, seed),
-        SamplerKind::Independent => xoshiro::pair(l, index, seed),
-    };
-    (unit(l, a), unit(l, b))
+    /// Sobol: the first pair, 32-bit fractions. Independent: index (room left for the numbers) and seed.
+    base: (L::U, L::U),
+}
+
+impl<L: Lanes> Fan<L> {
+    /// For `count` pairs, at least 1.
+    #[inline(always)]
+    pub fn new(l: L, kind: SamplerKind, keys: Keys<L>, bounce: u32, purpose: Purpose, count: u32) -> Self {
+        let salt = mix(bounce.wrapping_mul(8).wrapping_add(purpose as u32).wrapping_add(0x51ed_270b));
+        let seed = mix_lanes(l, keys.key ^ l.u(salt));
+        let room = count.next_power_of_two().ilog2();
+        let base = match kind {
+            SamplerKind::Sobol => sobol::scrambled_pair(l, keys.index, seed, room),
+            SamplerKind::Independent => (l.shr_by(keys.index, room), seed),
+        };
+        Self { kind, base }
+    }
+
+    /// Pair `number`, below the count.
+    #[inline(always)]
+    pub fn pair(&self, l: L, number: u32) -> (L::F, L::F) {
+        let (a, b) = match self.kind {
+            SamplerKind::Sobol => sobol::shifted(l, self.base, number),
+            SamplerKind::Independent => xoshiro::pair(l, self.base.0 | l.u(number.reverse_bits()), self.base.1),
+        };
+        (unit(l, a), unit(l, b))
+    }
 }
 
 /// The top 24 bits as a number in [0, 1): never 1.
@@ -90,21 +109,14 @@ mod tests {
     use crate::lanes::One;
 
     fn draw(kind: SamplerKind, key: u32, sample: u32) -> (f32, f32) {
-        pair(One, kind, Keys { key, index: sample.reverse_bits() }, 0, Purpose::Film, (0, 0))
+        pair(One, kind, Keys { key, index: sample.reverse_bits() }, 0, Purpose::Film)
     }
 
     #[test]
     fn sixteen_sobol_samples_fill_every_elementary_interval() {
         for key in 0..200 {
             let points: Vec<_> = (0..16).map(|s| draw(SamplerKind::Sobol, pixel_key(7, key, 1, 0), s)).collect();
-            for log2_columns in 0..=4u32 {
-                let (columns, rows) = (1 << log2_columns, 1 << (4 - log2_columns));
-                let mut cells: Vec<_> =
-                    points.iter().map(|(u, v)| ((u * columns as f32) as u32, (v * rows as f32) as u32)).collect();
-                cells.sort_unstable();
-                cells.dedup();
-                assert_eq!(cells.len(), 16, "key {key}: {columns} × {rows}");
-            }
+            assert!(fills_every_elementary_interval(&points), "key {key}");
         }
     }
 
@@ -130,16 +142,85 @@ mod tests {
         }
     }
 
+    /// The pairs of 16 samples with `count` numbers each.
+    fn fans(key: u32, count: u32) -> Vec<(f32, f32)> {
+        (0..16u32)
+            .flat_map(|s| {
+                let keys = Keys { key, index: s.reverse_bits() };
+                let fan = Fan::new(One, SamplerKind::Sobol, keys, 2, Purpose::LightPoint, count);
+                (0..count).map(move |number| fan.pair(One, number))
+            })
+            .collect()
+    }
+
+    fn fills_every_elementary_interval(points: &[(f32, f32)]) -> bool {
+        let log2 = points.len().ilog2();
+        (0..=log2).all(|log2_columns| {
+            let (columns, rows) = ((1 << log2_columns) as f32, (1 << (log2 - log2_columns)) as f32);
+            let mut cells: Vec<_> = points.iter().map(|(u, v)| ((u * columns) as u32, (v * rows) as u32)).collect();
+            cells.sort_unstable();
+            cells.dedup();
+            cells.len() == points.len()
+        })
+    }
+
     #[test]
-    fn shadow_rays_and_samples_together_are_one_net() {
-        let keys = |s: u32| Keys::<One> { key: 99, index: s.reverse_bits() };
-        let mut cells: Vec<_> = (0..16)
-            .flat_map(|s| (0..4).map(move |i| pair(One, SamplerKind::Sobol, keys(s), 2, Purpose::LightPoint, (i, 2))))
-            .map(|(u, v)| ((u * 8.0) as u32, (v * 8.0) as u32))
-            .collect();
-        cells.sort_unstable();
-        cells.dedup();
-        assert_eq!(cells.len(), 64);
+    fn shadow_rays_are_one_net_and_so_are_those_of_all_samples() {
+        for (key, count) in (0..60).flat_map(|key| [(key, 1), (key, 4), (key, 32)]) {
+            let points = fans(key, count);
+            assert!(fills_every_elementary_interval(&points), "key {key}, {count} a vertex: the round");
+            let vertices = points.chunks(count as usize);
+            assert!(vertices.into_iter().all(fills_every_elementary_interval), "key {key}, {count} a vertex");
+        }
+    }
+
+    /// χ² of counts that should all be the same.
+    fn chi_squared<'a>(counts: impl Iterator<Item = &'a u32> + Clone) -> f64 {
+        let expected = f64::from(counts.clone().sum::<u32>()) / counts.clone().count() as f64;
+        counts.map(|n| (f64::from(*n) - expected) * (f64::from(*n) - expected) / expected).sum()
+    }
+
+    #[test]
+    fn fans_of_two_purposes_share_no_strata() {
+        let mut counts = [[0u32; 4]; 4];
+        let samples = 20_000u32;
+        for sample in 0..samples {
+            let keys = Keys { key: pixel_key(5, 0, 0, sample / 16), index: (sample % 16).reverse_bits() };
+            let [choice, place] = [Purpose::LightChoice, Purpose::LightPoint]
+                .map(|purpose| Fan::new(One, SamplerKind::Sobol, keys, 1, purpose, 4).pair(One, 2).0);
+            counts[(choice * 4.0) as usize][(place * 4.0) as usize] += 1;
+        }
+        let chi2 = chi_squared(counts.iter().flatten());
+        // 15 degrees of freedom (fewer, as rounds are stratified): above 45 by chance once in 10⁴.
+        assert!(chi2 < 45.0, "{counts:?}");
+        // In a round, which is one pixel's: each of the first purpose's strata meets more than one of the second's.
+        for round in 0..100 {
+            let mut pairs = std::collections::BTreeSet::new();
+            for (sample, number) in (0..16u32).flat_map(|sample| (0..4).map(move |number| (sample, number))) {
+                let keys = Keys { key: pixel_key(6, 0, 0, round), index: sample.reverse_bits() };
+                pairs.insert([Purpose::LightChoice, Purpose::LightPoint].map(|purpose| {
+                    (Fan::new(One, SamplerKind::Sobol, keys, 1, purpose, 4).pair(One, number).0 * 4.0) as u32
+                }));
+            }
+            assert!(pairs.len() >= 8, "round {round}: {pairs:?}");
+        }
+    }
+
+    #[test]
+    fn each_number_of_a_fan_is_uniform() {
+        for number in [0, 13, 19] {
+            let mut counts = [[0u32; 8]; 8];
+            let keys = 20_000;
+            for key in 0..keys {
+                let keys = Keys { key: pixel_key(5, key, 0, 0), index: (key % 16).reverse_bits() };
+                let fan = Fan::new(One, SamplerKind::Sobol, keys, 1, Purpose::LightPoint, 20);
+                let (u, v) = fan.pair(One, number);
+                counts[(u * 8.0) as usize][(v * 8.0) as usize] += 1;
+            }
+            let chi2 = chi_squared(counts.iter().flatten());
+            // 63 degrees of freedom: above 110 by chance once in 5000.
+            assert!(chi2 < 110.0, "number {number}: χ² {chi2}");
+        }
     }
 
     #[test]
@@ -151,7 +232,7 @@ mod tests {
             assert_ne!(one, other);
         }
         let numbers: Vec<_> = [(0, Purpose::Bsdf), (1, Purpose::Bsdf), (0, Purpose::Roulette)]
-            .map(|(bounce, purpose)| pair(One, SamplerKind::Sobol, Keys { key: 1, index: 0 }, bounce, purpose, (0, 0)))
+            .map(|(bounce, purpose)| pair(One, SamplerKind::Sobol, Keys { key: 1, index: 0 }, bounce, purpose))
             .into();
         assert!(numbers[0] != numbers[1] && numbers[0] != numbers[2] && numbers[1] != numbers[2]);
     }

@@ -6,15 +6,38 @@ use crate::lanes::Lanes;
 use crate::sampling::sampler::mix_lanes;
 
 /// The point of one sample as 32-bit fractions. `index` is the sample number with its bits reversed.
+///
+/// With `room` > 0 it is the first of 2^`room` points, the others given by [`shifted`]: the sample has as many
+/// consecutive points of the sequence, of which only the first `room` digits differ. Those are scrambled by a random
+/// digital shift, the digits below by nested scrambling, which depends on them alone; so the points of one sample are a
+/// net, and those of 2^k samples together are one too.
 #[inline(always)]
-pub fn scrambled_pair<L: Lanes>(l: L, index: L::U, seed: L::U) -> (L::U, L::U) {
+pub fn scrambled_pair<L: Lanes>(l: L, index: L::U, seed: L::U, room: u32) -> (L::U, L::U) {
     let shuffled = reverse(l, owen(l, index, seed));
     let second_seed = mix_lanes(l, seed ^ l.u(0x2545_f491));
     let third_seed = l.mul_u(second_seed, l.u(0x9e37_79b1)) ^ l.shr::<16>(second_seed);
     // In both dimensions the hash wants reversed bits: van der Corput's point reversed is the index itself.
-    let first = reverse(l, owen(l, shuffled, second_seed));
-    let second = reverse(l, owen(l, second_dimension_reversed(l, shuffled), third_seed));
-    (first, second)
+    if room == 0 {
+        let first = owen(l, shuffled, second_seed);
+        let second = owen(l, second_dimension_reversed(l, shuffled), third_seed);
+        return (reverse(l, first), reverse(l, second));
+    }
+    let (up, low) = (l.u(1 << room), l.u((1 << room) - 1));
+    let shift = mix_lanes(l, third_seed ^ l.u(0x68bc_21eb));
+    // Which of its points a sample takes first is random, lest purposes that share a number share a stratum.
+    let place = l.mul_u(shuffled, up) | (mix_lanes(l, shuffled ^ shift) & low);
+    let second = second_dimension_reversed(l, place);
+    let first = l.mul_u(owen(l, shuffled, second_seed), up) | ((place ^ shift) & low);
+    let scrambled = l.mul_u(owen(l, l.shr_by(second, room), third_seed), up);
+    let second = scrambled | ((second ^ l.shr::<16>(shift)) & low);
+    (reverse(l, first), reverse(l, second))
+}
+
+/// Point `number` of a sample from its first.
+#[inline(always)]
+pub fn shifted<L: Lanes>(l: L, (first, second): (L::U, L::U), number: u32) -> (L::U, L::U) {
+    let across = second_dimension_reversed(crate::lanes::One, number).reverse_bits();
+    (first ^ l.u(number.reverse_bits()), second ^ l.u(across))
 }
 
 /// Sobol's second dimension, bits reversed: the index times Pascal's triangle modulo 2.

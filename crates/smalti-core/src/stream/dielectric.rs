@@ -21,7 +21,7 @@ pub fn run<L: Lanes>(
     next.reserve(hits.len());
     for at in (0..hits.len()).step_by(L::WIDTH) {
         let crossing = Crossing::at(l, scene, fresnel, hits, at);
-        let (u, _) = pair(l, sampler, hits.keys(l, at), bounce, Purpose::Lobe, (0, 0));
+        let (u, _) = pair(l, sampler, hits.keys(l, at), bounce, Purpose::Lobe);
         let reflects = l.lt(u, crossing.reflectance);
         let rays = crossing.rays(l, reflects, hits, at, hits.v3(l, THROUGHPUT, at));
         next.scatter(l, hits, at, hits.active(l, at), &rays);

@@ -11,9 +11,9 @@ pub fn run<L: Lanes>(l: L, sampler: SamplerKind, bounce: u32, vertices: &Stream,
     next.reserve(vertices.len());
     for at in (0..vertices.len()).step_by(L::WIDTH) {
         let keys = vertices.keys(l, at);
-        let (u, _) = pair(l, sampler, keys, bounce, Purpose::Roulette, (0, 0));
+        let (u, _) = pair(l, sampler, keys, bounce, Purpose::Roulette);
         let (survives, throughput) = roulette::run(l, vertices.v3(l, THROUGHPUT, at), u);
-        let (u, v) = pair(l, sampler, keys, bounce, Purpose::Bsdf, (0, 0));
+        let (u, v) = pair(l, sampler, keys, bounce, Purpose::Bsdf);
         let normal = vertices.v3(l, DIRECTION, at);
         let local = warp::cosine_hemisphere(l, u, v);
         let direction = warp::about(l, normal, local).normalised(l);

@@ -4,15 +4,19 @@
 //! With f = ρ/π, one light sample of pdf p contributes f · Lₑ · cosθ · V / p, weighed by the balance heuristic against
 //! the one scattering sample of pdf q = cosθ/π: N·p / (N·p + q), and divided by N: f · Lₑ · cosθ · V / (N·p + q), which
 //! stays finite however near the light is.
+//!
+//! Most shadow rays pass everything by far: the cones of the occluders' parts tell so in a few operations, and only the
+//! doubtful rest is traced, in packets of its own.
 
 use core::f32::consts::FRAC_1_PI;
 
-use super::{DIRECTION, LEAVES, ORIGIN, SLOT, Slots, Stream, THROUGHPUT};
+use super::{DIRECTION, LEAVES, ORIGIN, PADDING, PRIM, SLOT, Slots, Stream, THROUGHPUT};
+use crate::accel::cones::{Cones, Parts};
 use crate::accel::{Accel, Tracer};
 use crate::geometry::Ray;
-use crate::lanes::{Lanes, V3};
-use crate::light::{Incident, sample::sample, table::LightTable};
-use crate::sampling::{Purpose, pair};
+use crate::lanes::{Lanes, Rgb, V3};
+use crate::light::{sample::sample, table::LightTable};
+use crate::sampling::{Fan, Purpose};
 use crate::settings::Settings;
 
 /// What the stage needs to know.
@@ -21,77 +25,186 @@ pub struct Context<'a> {
     pub lights: &'a LightTable,
     /// What can stand in the way.
     pub occluders: &'a Accel,
-    /// Number of shadow rays, sampler.
+    /// The parts of what can.
+    pub parts: &'a Parts,
+    /// Number of shadow rays, at least 1; sampler.
     pub settings: &'a Settings,
     /// Whether a scattered ray may find the same light (path), or not (whitted).
     pub weighed: bool,
 }
 
+/// Shadow rays of a block of vertices (more where one packet asks for more): enough that the doubtful ones fill packets.
+const RAYS_AT_ONCE: usize = 1024;
+
+/// Sums and doubtful rays of a block of vertices.
+#[derive(Clone, Debug, Default)]
+pub struct Shadows {
+    /// Irradiance at the vertices, one column a colour.
+    sums: [Vec<f32>; 3],
+    /// Rays that something may stop: [`ORIGIN`], [`DIRECTION`] to the light at 1, the irradiance in [`THROUGHPUT`],
+    /// [`LEAVES`], the light's surface in [`PRIM`], and in [`SLOT`] the vertex.
+    rays: Stream,
+}
+
 /// Adds the direct light of every vertex of the stream.
+///
+/// A vertex sums what nothing can stop first, then what arrives of its other rays, both in the order of their numbers:
+/// a sum that does not depend on how the rays are packed.
 #[inline(always)]
-pub fn run<L: Lanes>(l: L, context: &Context<'_>, bounce: u32, vertices: &Stream, slots: &mut Slots) {
+pub fn run<L: Lanes>(
+    l: L,
+    context: &Context<'_>,
+    bounce: u32,
+    vertices: &Stream,
+    Shadows { sums, rays }: &mut Shadows,
+    slots: &mut Slots,
+) {
     let mut tracer = Tracer::new(l, context.occluders);
-    for at in (0..vertices.len()).step_by(L::WIDTH) {
-        let mut sum = V3::splat(l, [0.0; 3]);
-        for number in 0..context.settings.shadow_rays {
-            sum = sum + one(l, context, &mut tracer, (bounce, number), vertices, at);
+    let mut cones = Cones::new(context.parts);
+    let block = (RAYS_AT_ONCE / context.settings.shadow_rays as usize).next_multiple_of(PADDING).max(PADDING);
+    sums.iter_mut().for_each(|column| column.resize(block + PADDING, 0.0));
+    rays.clear();
+    rays.reserve(block * context.settings.shadow_rays as usize);
+    for first in (0..vertices.len()).step_by(block) {
+        let packets = || (first..vertices.len().min(first + block)).step_by(L::WIDTH);
+        rays.clear();
+        for at in packets() {
+            let free = unstopped(l, context, bounce, (vertices, at), &mut cones, (rays, at - first));
+            store(l, free, sums, at - first);
         }
-        let active = vertices.active(l, at);
-        let reflected = vertices.v3(l, THROUGHPUT, at) * sum.scale(l.f(FRAC_1_PI) * vertices.eta(l, at));
-        slots.add(l, active, vertices.u(l, SLOT, at), reflected);
+        trace(l, &mut tracer, rays, sums);
+        for at in packets() {
+            let [x, y, z] = [0, 1, 2].map(
+                #[inline(always)]
+                |k: usize| l.load(&sums[k][at - first..]),
+            );
+            let scale = l.f(FRAC_1_PI) * vertices.eta(l, at);
+            let reflected = vertices.v3(l, THROUGHPUT, at) * V3::new(x, y, z).scale(scale);
+            slots.add(l, vertices.active(l, at), vertices.u(l, SLOT, at), reflected);
+        }
     }
 }
 
-/// Irradiance by one light sample, already divided by their number.
+/// Irradiance that nothing can stop on its way, at a packet of vertices; rays that something may stop go to `doubtful`,
+/// for the vertices from number `vertex` on.
 #[inline(always)]
-fn one<L: Lanes>(
+fn unstopped<L: Lanes>(
     l: L,
     context: &Context<'_>,
-    tracer: &mut Tracer<'_, L>,
-    (bounce, number): (u32, u32),
-    vertices: &Stream,
-    at: usize,
-) -> V3<L> {
-    let (point, normal) = (vertices.v3(l, ORIGIN, at), vertices.v3(l, DIRECTION, at));
-    let incident = choose(l, context, (bounce, number), vertices, at);
-    let cosine = normal.dot(l, incident.reach);
-    // Lₑ · cosθ / (N·p + q) with q = cosθ/π: as cosθ / p = top / bottom, that is Lₑ · top / (N · bottom + top / π).
-    let (top, bottom) = (cosine * incident.spread.0, incident.spread.1);
-    let by_chance = if context.weighed { l.keep(incident.by_chance, top * l.f(FRAC_1_PI)) } else { l.f(0.0) };
-    let count = l.f(context.settings.shadow_rays as f32);
-    let irradiance = incident.radiance.scale(top / l.mul_add(count, bottom, by_chance));
-    // A light point behind the surface, or one that shows its back, has nothing to ask; nor has 0/0 or ∞/∞.
-    let brightest = irradiance.max_component(l);
-    let asks = vertices.active(l, at)
-        & l.lt(l.f(0.0), cosine)
-        & l.lt(l.f(0.0), brightest)
-        & l.lt(brightest, l.f(f32::INFINITY));
-    if !l.any(asks) {
-        return V3::splat(l, [0.0; 3]);
+    bounce: u32,
+    (vertices, at): (&Stream, usize),
+    cones: &mut Cones<'_>,
+    (doubtful, vertex): (&mut Stream, usize),
+) -> Rgb<L> {
+    let receiver = Receiver::new(l, context, bounce, vertices, at);
+    cones.look_from(l, receiver.point);
+    let mut sum = V3::splat(l, [0.0; 3]);
+    for number in 0..context.settings.shadow_rays {
+        let Arriving { reach, irradiance, surface, counts } = receiver.sample(l, context, number);
+        let doubt = counts & cones.may_stop(l, reach);
+        sum = sum + kept(l, counts & !doubt, irradiance);
+        if l.any(doubt) {
+            let mut push = doubtful.push(l, doubt);
+            push.v3(ORIGIN, receiver.point).v3(DIRECTION, reach).v3(THROUGHPUT, irradiance);
+            push.u(LEAVES, receiver.leaves).u(PRIM, surface).u(SLOT, l.add_u(l.iota(), l.u(vertex as u32)));
+        }
     }
-    let ray = Ray::new(l, point, incident.reach, vertices.u(l, LEAVES, at));
-    let lit = asks & !tracer.occluded(l, &ray, incident.surface, asks);
-    V3::new(l.keep(lit, irradiance.x), l.keep(lit, irradiance.y), l.keep(lit, irradiance.z))
+    sum
 }
 
-/// Chooses a light and a point of it.
+/// Traces the doubtful rays and adds what arrives to the sums of their vertices.
 #[inline(always)]
-fn choose<L: Lanes>(
-    l: L,
-    context: &Context<'_>,
-    (bounce, number): (u32, u32),
-    vertices: &Stream,
-    at: usize,
-) -> Incident<L> {
-    let settings = context.settings;
-    let keys = vertices.keys(l, at);
-    let part = (number, settings.shadow_rays.next_power_of_two().ilog2());
-    let row = if context.lights.rows.len() > 1 {
-        let (u, _) = pair(l, settings.sampler, keys, bounce, Purpose::LightChoice, part);
-        context.lights.choose(l, u)
-    } else {
-        l.u(0)
-    };
-    let numbers = pair(l, settings.sampler, keys, bounce, Purpose::LightPoint, part);
-    sample(l, context.lights, row, (vertices.v3(l, ORIGIN, at), vertices.v3(l, DIRECTION, at)), numbers)
+fn trace<L: Lanes>(l: L, tracer: &mut Tracer<'_, L>, rays: &Stream, sums: &mut [Vec<f32>; 3]) {
+    for at in (0..rays.len()).step_by(L::WIDTH) {
+        let active = rays.active(l, at);
+        let ray = Ray::new(l, rays.v3(l, ORIGIN, at), rays.v3(l, DIRECTION, at), rays.u(l, LEAVES, at));
+        let mut lit = l.bitmask(active & !tracer.occluded(l, &ray, rays.u(l, PRIM, at), active));
+        while lit != 0 {
+            let lane = at + lit.trailing_zeros() as usize;
+            let vertex = rays.value(SLOT, lane) as usize;
+            for (sum, arrives) in sums.iter_mut().zip(rays.triple(THROUGHPUT, lane)) {
+                sum[vertex] += arrives;
+            }
+            lit &= lit - 1;
+        }
+    }
+}
+
+/// A packet of vertices as the lights see them.
+struct Receiver<L: Lanes> {
+    point: V3<L>,
+    normal: V3<L>,
+    leaves: L::U,
+    active: L::M,
+    /// Numbers for the choice of a light, where there is one.
+    choice: Option<Fan<L>>,
+    /// Numbers for the place on it.
+    place: Fan<L>,
+}
+
+/// One light sample of each vertex.
+struct Arriving<L: Lanes> {
+    /// From the vertex to the light point.
+    reach: V3<L>,
+    /// Irradiance by it, already divided by the number of samples.
+    irradiance: Rgb<L>,
+    /// Surface of the light.
+    surface: L::U,
+    /// Lanes where something arrives if nothing is in the way.
+    counts: L::M,
+}
+
+impl<L: Lanes> Receiver<L> {
+    #[inline(always)]
+    fn new(l: L, context: &Context<'_>, bounce: u32, vertices: &Stream, at: usize) -> Self {
+        let Settings { sampler, shadow_rays, .. } = *context.settings;
+        let keys = vertices.keys(l, at);
+        let choice = if context.lights.rows.len() > 1 {
+            Some(Fan::new(l, sampler, keys, bounce, Purpose::LightChoice, shadow_rays))
+        } else {
+            None
+        };
+        Self {
+            point: vertices.v3(l, ORIGIN, at),
+            normal: vertices.v3(l, DIRECTION, at),
+            leaves: vertices.u(l, LEAVES, at),
+            active: vertices.active(l, at),
+            choice,
+            place: Fan::new(l, sampler, keys, bounce, Purpose::LightPoint, shadow_rays),
+        }
+    }
+
+    /// Light sample `number`: a light, a point of it, and what arrives from there.
+    #[inline(always)]
+    fn sample(&self, l: L, context: &Context<'_>, number: u32) -> Arriving<L> {
+        let row = match self.choice {
+            Some(fan) => context.lights.choose(l, fan.pair(l, number).0),
+            None => l.u(0),
+        };
+        let incident = sample(l, context.lights, row, (self.point, self.normal), self.place.pair(l, number));
+        let cosine = self.normal.dot(l, incident.reach);
+        // Lₑ · cosθ / (N·p + q) with q = cosθ/π: as cosθ / p = top / bottom, that is Lₑ · top / (N · bottom + top / π).
+        let (top, bottom) = (cosine * incident.spread.0, incident.spread.1);
+        let by_chance = if context.weighed { l.keep(incident.by_chance, top * l.f(FRAC_1_PI)) } else { l.f(0.0) };
+        let count = l.f(context.settings.shadow_rays as f32);
+        let irradiance = incident.radiance.scale(top / l.mul_add(count, bottom, by_chance));
+        // A light point behind the surface, or one that shows its back, has nothing to ask; nor has 0/0 or ∞/∞.
+        let brightest = irradiance.max_component(l);
+        let arrives = l.lt(l.f(0.0), brightest) & l.lt(brightest, l.f(f32::INFINITY));
+        let counts = self.active & l.lt(l.f(0.0), cosine) & arrives;
+        Arriving { reach: incident.reach, irradiance, surface: incident.surface, counts }
+    }
+}
+
+#[inline(always)]
+fn kept<L: Lanes>(l: L, mask: L::M, radiance: Rgb<L>) -> Rgb<L> {
+    V3::new(l.keep(mask, radiance.x), l.keep(mask, radiance.y), l.keep(mask, radiance.z))
+}
+
+#[inline(always)]
+fn store<L: Lanes>(l: L, radiance: Rgb<L>, to: &mut [Vec<f32>; 3], at: usize) {
+    let [x, y, z] = to;
+    l.store(radiance.x, &mut x[at..]);
+    l.store(radiance.y, &mut y[at..]);
+    l.store(radiance.z, &mut z[at..]);
 }

@@ -80,5 +80,5 @@ pub fn run<L: Lanes>(
 /// The place in the pixel.
 #[inline(always)]
 fn place<L: Lanes>(l: L, settings: &Settings, keys: Keys<L>) -> (L::F, L::F) {
-    if settings.jitter { pair(l, settings.sampler, keys, 0, Purpose::Film, (0, 0)) } else { (l.f(0.5), l.f(0.5)) }
+    if settings.jitter { pair(l, settings.sampler, keys, 0, Purpose::Film) } else { (l.f(0.5), l.f(0.5)) }
 }

@@ -25,7 +25,7 @@ pub fn run<L: Lanes>(l: L, scene: &Scene, ending: Ending, bounce: u32, hits: &St
         let throughput = hits.v3(l, THROUGHPUT, at) * hit.colour;
         let (survives, throughput) = match ending {
             Ending::Roulette(sampler) => {
-                let (u, _) = pair(l, sampler, hits.keys(l, at), bounce, Purpose::Roulette, (0, 0));
+                let (u, _) = pair(l, sampler, hits.keys(l, at), bounce, Purpose::Roulette);
                 roulette::run(l, throughput, u)
             }
             Ending::Threshold(least) => (l.le(l.f(least), throughput.max_component(l)), throughput),

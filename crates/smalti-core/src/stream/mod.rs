@@ -109,8 +109,7 @@ impl Stream {
 
     /// Makes room for `more` paths behind those that are there.
     pub fn reserve(&mut self, more: usize) {
-        let capacity = self.stride - 2 * PADDING;
-        if self.len + more <= capacity {
+        if self.len + more + 2 * PADDING <= self.stride {
             return;
         }
         let mut larger = Stream::new((self.len + more).next_power_of_two(), self.used);
