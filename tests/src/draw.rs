@@ -7,7 +7,7 @@ use smalti_core::film::{Film, Image};
 use smalti_core::render::{Level, Renderer};
 use smalti_core::scene::World;
 use smalti_core::settings::Settings;
-use smalti_scene::{Loaded, RenderTable};
+use smalti_scene::Loaded;
 use smalti_scheduler::{Cancel, Outcome, Watch};
 
 /// The root of the repository.
@@ -32,26 +32,6 @@ pub fn load(path: &Path) -> Loaded {
 /// What the scene `name` in `scenes/` says.
 pub fn scene(name: &str) -> Loaded {
     load(&repository().join("scenes").join(name).with_extension("toml"))
-}
-
-/// The settings that a scene file asks for, with the defaults where it says nothing.
-pub fn settings(table: &RenderTable) -> Settings {
-    let default = Settings::default();
-    let [width, height] = table.size.unwrap_or([default.width, default.height]);
-    Settings {
-        integrator: table.integrator.unwrap_or(default.integrator),
-        width,
-        height,
-        crop: table.crop,
-        spp: table.spp.unwrap_or(default.spp),
-        shadow_rays: table.shadow_rays.unwrap_or(default.shadow_rays),
-        max_bounces: table.max_bounces,
-        sampler: table.sampler.unwrap_or(default.sampler),
-        seed: table.seed.unwrap_or(default.seed),
-        fresnel: table.fresnel.unwrap_or(default.fresnel),
-        jitter: table.jitter.unwrap_or(default.jitter),
-        camera: default.camera,
-    }
 }
 
 /// How the machine works: no bit of an image depends on it.

@@ -59,8 +59,8 @@ fn total(pixels: &[Estimate]) -> ([f64; 3], [f64; 3]) {
     let sum = |of: fn(&Estimate) -> [f64; 3]| {
         pixels.iter().map(of).fold([0.0; 3], |a, b| [a[0] + b[0], a[1] + b[1], a[2] + b[2]])
     };
-    let mean = sum(|pixel| pixel.mean).map(|x| x / count);
-    (mean, sum(|pixel| pixel.variance).map(|x| x.sqrt() / count))
+    let mean = sum(Estimate::mean).map(|x| x / count);
+    (mean, sum(Estimate::variance).map(|x| x.sqrt() / count))
 }
 
 impl Rendered {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use smalti_core::settings::Settings;
-use smalti_tests::draw::{Way, load, render, renderer, scene_files, settings};
+use smalti_tests::draw::{Way, load, render, renderer, scene_files};
 
 /// What works: the scenes that a user opens first, and those of the tests.
 fn working() -> Vec<PathBuf> {
@@ -15,7 +15,7 @@ fn working() -> Vec<PathBuf> {
 
 /// Settings of the scene, made small.
 fn small(path: &Path) -> Settings {
-    let settings = settings(&load(path).settings);
+    let settings = load(path).settings.settings();
     Settings { width: 40, height: 40, crop: None, spp: 4, ..settings }
 }
 

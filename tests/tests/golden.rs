@@ -11,7 +11,7 @@ use std::{env, fs};
 use smalti_core::film::{Estimate, Image};
 use smalti_core::render::Level;
 use smalti_image::hash;
-use smalti_tests::draw::{Way, load, render, repository, scene_files, settings};
+use smalti_tests::draw::{Way, load, render, repository, scene_files};
 
 const FOLDER: &str = "tests/golden";
 
@@ -30,7 +30,7 @@ struct Golden {
 fn rendered(path: &Path) -> Golden {
     let loaded = load(path);
     let way = Way { threads: 2, tile: 16, level: Level::available()[0] };
-    let outcome = render(&loaded.world, &settings(&loaded.settings), way, None);
+    let outcome = render(&loaded.world, &loaded.settings.settings(), way, None);
     assert_eq!(outcome.rejected.count, 0, "{} has samples that are not finite", path.display());
     let image = outcome.film.develop();
     let estimates = outcome.film.estimates().expect("at least two rounds of samples");
@@ -54,8 +54,8 @@ fn summary<'a>(pixels: impl Iterator<Item = &'a Estimate>) -> [f64; 6] {
     for pixel in pixels {
         count += 1.0;
         for channel in 0..3 {
-            sums[channel] += pixel.mean[channel];
-            sums[channel + 3] += pixel.variance[channel];
+            sums[channel] += pixel.mean()[channel];
+            sums[channel + 3] += pixel.variance()[channel];
         }
     }
     [0, 1, 2, 3, 4, 5].map(|k| if k < 3 { sums[k] / count } else { sums[k].sqrt() / count })

@@ -1,6 +1,9 @@
 //! Settings of a render: what a user chooses, apart from the scene. Everything here changes the image;
 //! what must not (threads, tiles, SIMD level, display) is not here.
 
+/// Most light samples at a vertex: their numbers and those of a round's samples share 32 bits.
+pub const MOST_SHADOW_RAYS: u32 = 1 << 16;
+
 /// Settings of a render, after the scene file and the command line have been merged.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
@@ -14,7 +17,8 @@ pub struct Settings {
     pub crop: Option<Rect>,
     /// Samples (camera paths) a pixel, at least 1.
     pub spp: u32,
-    /// Light samples at each diffuse vertex in all, over all lights; 0: the BSDF sample alone finds light.
+    /// Light samples at each diffuse vertex in all, over all lights, at most [`MOST_SHADOW_RAYS`]; 0: the BSDF
+    /// sample alone finds light.
     pub shadow_rays: u32,
     /// Scattering events after which a path ends; `None`: roulette alone ends it, with a counted cap.
     pub max_bounces: Option<u32>,

@@ -32,7 +32,7 @@ impl Grid<'_> {
         let mut products = [[0.0; 3]; 3];
         for (pixel, partner) in self.pairs() {
             let Some(partner) = partner else { continue };
-            let change: [f64; 3] = std::array::from_fn(|c| contrast(pixel.variance[c], partner.variance[c]));
+            let change: [f64; 3] = std::array::from_fn(|c| contrast(pixel.variance()[c], partner.variance()[c]));
             for (i, row) in products.iter_mut().enumerate() {
                 (0..3).for_each(|j| row[j] += change[i] * change[j]);
             }
@@ -53,7 +53,7 @@ mod tests {
     use super::*;
 
     fn estimate(variance: [f64; 3]) -> Estimate {
-        Estimate { mean: [1.0; 3], variance, rounds: 4 }
+        Estimate::new([1.0; 3], variance, 4)
     }
 
     #[test]

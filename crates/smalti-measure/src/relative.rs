@@ -86,7 +86,7 @@ impl Sums {
         let (total, rounds): (f64, _) = (own.iter().sum(), f64::from(pixel.rounds));
         self.own += total;
         for (c, term) in own.iter().enumerate() {
-            let part = pixel.mean[c] * pixel.mean[c] * weights[c];
+            let part = pixel.mean()[c] * pixel.mean()[c] * weights[c];
             // The mean of V² is not v² but (R + 1) / (R − 1) times that.
             self.curvature += term * term * (4.0 * part - 1.0) * (rounds - 1.0) / (rounds + 1.0);
         }
@@ -191,27 +191,27 @@ fn squares(grid: &Grid, rows: &[Estimate], floor: f64) -> Vec<Square> {
 /// The estimated squared errors of a pixel's channels, with the weights of its own or another value.
 fn terms(pixel: &Estimate, weights: &[f64; 3]) -> [f64; 3] {
     // A black image has infinite weights where the floor is 0, and no error.
-    std::array::from_fn(|c| if pixel.variance[c] == 0.0 { 0.0 } else { pixel.variance[c] * weights[c] })
+    std::array::from_fn(|c| if pixel.variance()[c] == 0.0 { 0.0 } else { pixel.variance()[c] * weights[c] })
 }
 
 fn weights(pixel: &Estimate, floor: f64) -> [f64; 3] {
-    pixel.mean.map(|mean| 1.0 / (mean * mean + floor))
+    pixel.mean().map(|mean| 1.0 / (mean * mean + floor))
 }
 
 /// Whether no channel differs by more than noise can explain.
 fn alike(pixel: &Estimate, partner: &Estimate) -> bool {
-    let noise = |c: usize| pixel.variance[c] + partner.variance[c];
+    let noise = |c: usize| pixel.variance()[c] + partner.variance()[c];
     (0..3).all(|c| distance([pixel, partner], c) <= ALIKE * ALIKE * noise(c))
 }
 
 fn distance([pixel, partner]: [&Estimate; 2], channel: usize) -> f64 {
-    let difference = pixel.mean[channel] - partner.mean[channel];
+    let difference = pixel.mean()[channel] - partner.mean()[channel];
     difference * difference
 }
 
 /// Half of what the squared errors of a pair grow by when each is taken relative to the other's value.
 fn gap([pixel, partner]: [&Estimate; 2], [own, other]: [&[f64; 3]; 2]) -> f64 {
-    let of_channel = |c: usize| match pixel.variance[c] - partner.variance[c] {
+    let of_channel = |c: usize| match pixel.variance()[c] - partner.variance()[c] {
         0.0 => 0.0,
         change => 0.5 * change * (other[c] - own[c]),
     };
@@ -222,7 +222,7 @@ fn gap([pixel, partner]: [&Estimate; 2], [own, other]: [&[f64; 3]; 2]) -> f64 {
 /// square of the value.
 fn structure(pair: [&Estimate; 2], [own, other]: [&[f64; 3]; 2]) -> f64 {
     let rounds = f64::from(pair[0].rounds);
-    let of_channel = |c: usize| match pair.map(|pixel| pixel.variance[c]) {
+    let of_channel = |c: usize| match pair.map(|pixel| pixel.variance()[c]) {
         [0.0, _] => 0.0,
         // The last term of the excess: V and V² go together.
         [v, w] => 2.0 * v * own[c] * other[c] * (distance(pair, c) - v - w + 2.0 * v / (rounds + 1.0)),
@@ -233,5 +233,5 @@ fn structure(pair: [&Estimate; 2], [own, other]: [&[f64; 3]; 2]) -> f64 {
 fn is_certified(pixel: &Estimate, floor: f64) -> bool {
     let base = floor.sqrt();
     let bound = |mean: &f64| (mean.abs() + base) * (mean.abs() + base);
-    pixel.variance.iter().sum::<f64>() <= CERTIFIED * CERTIFIED * pixel.mean.iter().map(bound).sum::<f64>()
+    pixel.variance().iter().sum::<f64>() <= CERTIFIED * CERTIFIED * pixel.mean().iter().map(bound).sum::<f64>()
 }

@@ -1,5 +1,6 @@
 //! The error that a render states of itself.
 
+use serde::Serialize;
 use smalti_core::film::Estimate;
 
 use crate::compare::FLOOR;
@@ -10,8 +11,8 @@ use crate::relative::relative;
 ///
 /// The upper ends are `None` where they cannot be known: too few rounds, or pixels whose statistics cannot be trusted
 /// carry a notable part of the error. The statement is then a lower bound. Noise only: a bias (a depth limit, a photon
-/// radius) and light that no sample met are not in it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// radius) and light that no sample met are not in it. The names of the fields are a promise: summaries carry them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ErrorStatement {
     /// Mean over pixels and channels of (x − r)² / (r² + 0.01), r the truth.
     pub relmse: f64,
@@ -43,7 +44,7 @@ pub fn error_statement(estimates: &[Estimate], width: u32, shared: u32) -> Optio
     }
     let grid = Grid { estimates, width: width.max(1) as usize, shared: (shared as usize).clamp(1, estimates.len()) };
     let correlation = grid.channel_correlation();
-    let mean = estimates.iter().flat_map(|pixel| pixel.mean).sum::<f64>() / (3 * estimates.len()) as f64;
+    let mean = estimates.iter().flat_map(Estimate::mean).sum::<f64>() / (3 * estimates.len()) as f64;
     let absolute = relative(&grid, &correlation, FLOOR)?;
     let scaled = relative(&grid, &correlation, FLOOR * mean * mean)?;
     Some(ErrorStatement {
@@ -58,7 +59,7 @@ pub fn error_statement(estimates: &[Estimate], width: u32, shared: u32) -> Optio
 }
 
 fn is_usable(pixel: &Estimate) -> bool {
-    pixel.rounds >= 2 && pixel.mean.iter().chain(&pixel.variance).all(|value| value.is_finite())
+    pixel.rounds >= 2 && pixel.mean().iter().chain(&pixel.variance()).all(|value| value.is_finite())
 }
 
 #[cfg(test)]
@@ -66,7 +67,7 @@ mod tests {
     use super::*;
 
     fn pixel(mean: f64, variance: f64, rounds: u32) -> Estimate {
-        Estimate { mean: [mean; 3], variance: [variance; 3], rounds }
+        Estimate::new([mean; 3], [variance; 3], rounds)
     }
 
     #[test]

@@ -117,7 +117,7 @@ impl Simulation {
             pixel.add(index, radiance);
         }
         let variance = pixel.variance_of_mean(samples).unwrap();
-        Estimate { mean: pixel.mean(samples), variance, rounds: self.rounds }
+        Estimate::new(pixel.mean(samples), variance, self.rounds)
     }
 
     /// The random numbers of the pixel at (`x`, `y`).
@@ -136,7 +136,7 @@ impl Simulation {
         let values = truths.as_flattened();
         let brightness = values.iter().sum::<f64>() / values.len() as f64;
         let error = |floor: f64| {
-            let pairs = estimates.iter().flat_map(|estimate| estimate.mean).zip(values);
+            let pairs = estimates.iter().flat_map(Estimate::mean).zip(values);
             pairs.map(|(x, r)| (x - r) * (x - r) / (r * r + floor)).sum::<f64>() / values.len() as f64
         };
         let statement = error_statement(&estimates, SIDE as u32, declared).unwrap();

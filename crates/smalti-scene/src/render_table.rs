@@ -1,6 +1,6 @@
 //! `[render]`: settings that a scene file may suggest and the command line may override.
 
-use smalti_core::settings::{Fresnel, Integrator, Rect, SamplerKind};
+use smalti_core::settings::{Fresnel, Integrator, MOST_SHADOW_RAYS, Rect, SamplerKind, Settings};
 
 use crate::document::{Bounds, Key, Node, Section, key};
 use crate::error::Result;
@@ -38,7 +38,7 @@ pub struct RenderTable {
     pub crop: Option<Rect>,
     /// `spp`, samples a pixel, at least 1.
     pub spp: Option<u32>,
-    /// `shadow_rays` at each diffuse vertex.
+    /// `shadow_rays` at each diffuse vertex, at most [`MOST_SHADOW_RAYS`].
     pub shadow_rays: Option<u32>,
     /// `max_bounces`, scattering events.
     pub max_bounces: Option<u32>,
@@ -67,7 +67,9 @@ impl RenderTable {
             size,
             crop: section.read("crop", |node| crop(node, size))?,
             spp: section.read("spp", |node| node.count(1))?,
-            shadow_rays: section.read("shadow_rays", |node| node.count(0))?,
+            shadow_rays: section
+                .read("shadow_rays", |node| node.whole(0, MOST_SHADOW_RAYS.into()))?
+                .map(|rays| rays as u32),
             max_bounces: section.read("max_bounces", |node| node.count(0))?,
             sampler: section.read("sampler", |node| node.choice(&SAMPLERS.map(|x| (x.name(), x))))?,
             seed: section.read("seed", |node| node.whole(0, u64::MAX))?,
@@ -76,6 +78,26 @@ impl RenderTable {
             exposure: section.read("exposure", |node| node.number(Bounds::STOPS))?,
             tile: section.read("tile", |node| node.count(1))?,
         })
+    }
+
+    /// The settings that the table asks for, with the defaults where it says nothing.
+    pub fn settings(&self) -> Settings {
+        let default = Settings::default();
+        let [width, height] = self.size.unwrap_or([default.width, default.height]);
+        Settings {
+            integrator: self.integrator.unwrap_or(default.integrator),
+            width,
+            height,
+            crop: self.crop,
+            spp: self.spp.unwrap_or(default.spp),
+            shadow_rays: self.shadow_rays.unwrap_or(default.shadow_rays),
+            max_bounces: self.max_bounces,
+            sampler: self.sampler.unwrap_or(default.sampler),
+            seed: self.seed.unwrap_or(default.seed),
+            fresnel: self.fresnel.unwrap_or(default.fresnel),
+            jitter: self.jitter.unwrap_or(default.jitter),
+            camera: default.camera,
+        }
     }
 }
 

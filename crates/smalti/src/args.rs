@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use smalti_core::settings::Rect;
+use smalti_core::settings::{MOST_SHADOW_RAYS, Rect};
 
 use crate::names::{FresnelArg, IntegratorArg, SamplerArg, SimdArg};
 use crate::parse::{Size, parse_crop, parse_finite, parse_size, parse_threads, parse_threshold};
@@ -105,7 +105,7 @@ pub struct ImageArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub spp: Option<u32>,
     /// Light samples at each diffuse vertex in all; 0: light is found by chance only
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=i64::from(MOST_SHADOW_RAYS)))]
     pub shadow_rays: Option<u32>,
     /// Scattering events after which a path ends (biased); without it only roulette ends a path
     #[arg(long, value_name = "N")]

@@ -1,8 +1,9 @@
 //! The summary of a render for people: a few lines that say what was made, how long it took and how good it is.
 
 use console::style;
+use smalti_measure::ErrorStatement;
 
-use crate::error_statement::{ErrorRecord, SAMPLES_NEEDED};
+use crate::error_statement::SAMPLES_NEEDED;
 use crate::memory::in_words;
 use crate::summary::Summary;
 use crate::table::{Align, table};
@@ -45,7 +46,7 @@ fn error(summary: &Summary) -> String {
     }
 }
 
-fn stated(error: &ErrorRecord) -> String {
+fn stated(error: &ErrorStatement) -> String {
     let low = percent(error.relative_error_low);
     let range = match error.relative_error_high {
         Some(high) => format!("{low} to {}", percent(high)),
@@ -53,6 +54,7 @@ fn stated(error: &ErrorRecord) -> String {
     };
     let uncertified = match error.uncertified_pixels {
         0 => String::new(),
+        1 => "; 1 pixel is too uncertain to judge".into(),
         pixels => format!("; {pixels} pixels are too uncertain to judge"),
     };
     format!("{} ({range}), relmse {:.3e}{uncertified}", percent(error.relative_error), error.relmse)
@@ -88,7 +90,7 @@ mod tests {
 
     #[test]
     fn errors_without_an_upper_end_are_lower_bounds() {
-        let error = ErrorRecord {
+        let error = ErrorStatement {
             relmse: 0.01,
             relmse_low: 0.005,
             relmse_high: None,
@@ -99,7 +101,7 @@ mod tests {
         };
         let expected = "10.000 % (at least 8.000 %), relmse 1.000e-2; 3 pixels are too uncertain to judge";
         assert_eq!(stated(&error), expected);
-        let known = ErrorRecord { relative_error_high: Some(0.12), uncertified_pixels: 0, ..error };
+        let known = ErrorStatement { relative_error_high: Some(0.12), uncertified_pixels: 0, ..error };
         assert_eq!(stated(&known), "10.000 % (8.000 % to 12.000 %), relmse 1.000e-2");
     }
 }

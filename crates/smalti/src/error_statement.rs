@@ -1,6 +1,5 @@
-//! The error that a render states of its image, under its documented names.
+//! The error that a render states of its image.
 
-use serde::Serialize;
 use smalti_core::film::{Film, ROUND};
 use smalti_measure::ErrorStatement;
 
@@ -10,33 +9,9 @@ pub const SAMPLES_NEEDED: u32 = 2 * ROUND;
 /// Pixels have samples of their own: they share none with a neighbour.
 const SHARED: u32 = 1;
 
-/// Noise, with 95 % intervals; upper ends that cannot be known are null.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct ErrorRecord {
-    pub relmse: f64,
-    pub relmse_low: f64,
-    pub relmse_high: Option<f64>,
-    pub relative_error: f64,
-    pub relative_error_low: f64,
-    pub relative_error_high: Option<f64>,
-    pub uncertified_pixels: usize,
-}
-
 /// The error of the image that `film` develops into; `None` with fewer than [`SAMPLES_NEEDED`].
-pub fn of(film: &Film) -> Option<ErrorRecord> {
-    smalti_measure::error_statement(&film.estimates()?, film.area.width, SHARED).map(record)
-}
-
-fn record(statement: ErrorStatement) -> ErrorRecord {
-    ErrorRecord {
-        relmse: statement.relmse,
-        relmse_low: statement.relmse_low,
-        relmse_high: statement.relmse_high,
-        relative_error: statement.relative_error,
-        relative_error_low: statement.relative_error_low,
-        relative_error_high: statement.relative_error_high,
-        uncertified_pixels: statement.uncertified_pixels,
-    }
+pub fn of(film: &Film) -> Option<ErrorStatement> {
+    smalti_measure::error_statement(&film.estimates()?, film.area.width, SHARED)
 }
 
 #[cfg(test)]

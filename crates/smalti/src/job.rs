@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use smalti_core::render::{Level, Renderer};
 use smalti_core::scene::World;
 use smalti_core::settings::{Rect, Settings};
-use smalti_scene::RenderTable;
 
 use crate::args::ImageArgs;
 use crate::exit::Failure;
@@ -43,7 +42,7 @@ impl Job {
     pub fn load(scene: &Path, flags: &ImageArgs, simd: SimdArg) -> Result<Self, Failure> {
         let level = choose_level(simd, &Level::available())?;
         let loaded = smalti_scene::load(scene).map_err(|error| Failure::scene(&error))?;
-        let settings = merge(&loaded.settings, flags, &loaded.world)?;
+        let settings = merge(loaded.settings.settings(), flags, &loaded.world)?;
         check_area(&settings)?;
         check_memory(&settings, memory::total_bytes())?;
         Ok(Self {
@@ -89,27 +88,23 @@ fn choose_level(typed: SimdArg, available: &[Level]) -> Result<Level, Failure> {
     Err(Failure::user(format!("this machine has no {}; it has {}", wanted.name(), names.join(", "))))
 }
 
-/// Defaults, overridden by the scene file, overridden by flags.
-fn merge(scene: &RenderTable, flags: &ImageArgs, world: &World) -> Result<Settings, Failure> {
-    let default = Settings::default();
-    let [width, height] = match flags.size {
-        Some(Size { width, height }) => [width, height],
-        None => scene.size.unwrap_or([default.width, default.height]),
-    };
+/// The scene file's settings, overridden by flags.
+fn merge(scene: Settings, flags: &ImageArgs, world: &World) -> Result<Settings, Failure> {
+    let Size { width, height } = flags.size.unwrap_or(Size { width: scene.width, height: scene.height });
     let named = flags.camera.as_deref().map(|name| find_camera(name, world)).transpose()?;
     Ok(Settings {
-        integrator: flags.integrator.map(Into::into).or(scene.integrator).unwrap_or(default.integrator),
+        integrator: flags.integrator.map_or(scene.integrator, Into::into),
         width,
         height,
         crop: flags.crop.or(scene.crop),
-        spp: flags.spp.or(scene.spp).unwrap_or(default.spp),
-        shadow_rays: flags.shadow_rays.or(scene.shadow_rays).unwrap_or(default.shadow_rays),
+        spp: flags.spp.unwrap_or(scene.spp),
+        shadow_rays: flags.shadow_rays.unwrap_or(scene.shadow_rays),
         max_bounces: flags.max_bounces.or(scene.max_bounces),
-        sampler: flags.sampler.map(Into::into).or(scene.sampler).unwrap_or(default.sampler),
-        seed: flags.seed.or(scene.seed).unwrap_or(default.seed),
-        fresnel: flags.fresnel.map(Into::into).or(scene.fresnel).unwrap_or(default.fresnel),
-        jitter: !flags.no_jitter && scene.jitter.unwrap_or(default.jitter),
-        camera: named.unwrap_or(default.camera),
+        sampler: flags.sampler.map_or(scene.sampler, Into::into),
+        seed: flags.seed.unwrap_or(scene.seed),
+        fresnel: flags.fresnel.map_or(scene.fresnel, Into::into),
+        jitter: scene.jitter && !flags.no_jitter,
+        camera: named.unwrap_or(scene.camera),
     })
 }
 
@@ -189,10 +184,9 @@ mod tests {
 
     #[test]
     fn the_scene_overrides_the_defaults() {
-        assert_eq!(merge(&RenderTable::default(), &ImageArgs::default(), &world(&[""])), Ok(Settings::default()));
-        let scene = RenderTable { spp: Some(7), jitter: Some(false), max_bounces: Some(3), ..RenderTable::default() };
-        let expected = Settings { spp: 7, jitter: false, max_bounces: Some(3), ..Settings::default() };
-        assert_eq!(merge(&scene, &ImageArgs::default(), &world(&[""])), Ok(expected));
+        assert_eq!(merge(Settings::default(), &ImageArgs::default(), &world(&[""])), Ok(Settings::default()));
+        let scene = Settings { spp: 7, jitter: false, max_bounces: Some(3), ..Settings::default() };
+        assert_eq!(merge(scene.clone(), &ImageArgs::default(), &world(&[""])), Ok(scene));
     }
 
     #[test]
@@ -225,20 +219,7 @@ mod tests {
             jitter: false,
             camera: 1,
         };
-        let scene = RenderTable {
-            integrator: Some(Integrator::Path),
-            size: Some([1, 1]),
-            crop: Some(Rect::default()),
-            spp: Some(1),
-            shadow_rays: Some(1),
-            max_bounces: Some(1),
-            sampler: Some(SamplerKind::Sobol),
-            seed: Some(1),
-            fresnel: Some(Fresnel::Exact),
-            jitter: Some(true),
-            ..RenderTable::default()
-        };
-        assert_eq!(merge(&scene, &flags, &world(&["right", "left"])), Ok(expected));
+        assert_eq!(merge(Settings::default(), &flags, &world(&["right", "left"])), Ok(expected));
     }
 
     #[test]

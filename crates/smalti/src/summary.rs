@@ -7,9 +7,10 @@ use smalti_core::film::{Film, Image, ROUND};
 use smalti_core::plan::LEAST_CONTRIBUTION;
 use smalti_core::render::{RayCounts, Rejected};
 use smalti_core::settings::{Fresnel, Integrator, Rect, Settings};
+use smalti_measure::ErrorStatement;
 use smalti_scheduler::{Outcome, Timing};
 
-use crate::error_statement::{self, ErrorRecord};
+use crate::error_statement;
 use crate::job::Job;
 use crate::record::{self, SettingsRecord};
 use crate::reproduce;
@@ -54,7 +55,8 @@ pub struct Summary {
     /// Paths that the hard cap on bounces ended.
     pub capped_paths: u64,
     pub mean: [f64; 3],
-    pub error: Option<ErrorRecord>,
+    /// Noise; null with too few samples. Upper ends that cannot be known are null.
+    pub error: Option<ErrorStatement>,
     /// What is wrong with the image apart from noise, in words.
     pub biases: Vec<String>,
     pub tiles: Option<TilesRecord>,
@@ -108,7 +110,7 @@ pub struct Developed {
     /// The linear image.
     pub image: Image,
     /// Its error; `None` with too few samples.
-    pub error: Option<ErrorRecord>,
+    pub error: Option<ErrorStatement>,
     /// Fewest and most samples of any pixel.
     pub samples: (u32, u32),
 }

@@ -21,7 +21,7 @@ type Picture = Vec<[(f64, f64); 3]>;
 
 fn of_streams(rendered: &Rendered) -> Picture {
     let pixels = rendered.pixels.as_ref().expect("two rounds of samples");
-    pixels.iter().map(|pixel| [0, 1, 2].map(|k| (pixel.mean[k], pixel.variance[k]))).collect()
+    pixels.iter().map(|pixel| [0, 1, 2].map(|k| (pixel.mean()[k], pixel.variance()[k]))).collect()
 }
 
 fn of_oracle(pixels: &[smalti_tests::oracle::Pixel]) -> Picture {

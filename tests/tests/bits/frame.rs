@@ -5,7 +5,7 @@ use smalti_core::scene::World;
 use smalti_core::settings::{Integrator, Settings};
 use smalti_image::hash;
 use smalti_scene::Loaded;
-use smalti_tests::draw::{Way, draw, load, scene_files, settings};
+use smalti_tests::draw::{Way, draw, load, scene_files};
 
 /// Applies `to` to every point of the world, cameras included.
 fn map_points(world: &mut World, to: impl Fn(DVec3) -> DVec3) {
@@ -40,7 +40,7 @@ fn scenes() -> Vec<(String, Loaded, Settings)> {
     let files = scene_files("scenes").into_iter().chain(scene_files("tests/scenes/golden"));
     let small = |path: std::path::PathBuf| {
         let loaded = load(&path);
-        let settings = settings(&loaded.settings);
+        let settings = loaded.settings.settings();
         let settings = Settings { width: 24, height: 16, crop: None, spp: 2, ..settings };
         (path.file_name().unwrap().to_string_lossy().into_owned(), loaded, settings)
     };

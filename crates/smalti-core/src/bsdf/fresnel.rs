@@ -37,15 +37,16 @@ pub fn boundary<L: Lanes>(l: L, [n, inverse, excess]: [L::F; 3], outside: L::M, 
 #[inline(always)]
 pub fn reflectance<L: Lanes>(l: L, kind: Fresnel, at: &Boundary<L>) -> L::F {
     let one = l.f(1.0);
-    // Report eq. 10 left out: no total reflection.
-    let passes = l.lt(l.f(0.0), at.g_squared) | l.m(mutant!("eq10_no_total_reflection"));
+    let passes = l.lt(l.f(0.0), at.g_squared);
+    // Report eq. 10 left out: what cannot be refracted is refracted all the same.
+    let total = if mutant!("eq10_no_total_reflection") { l.f(0.0) } else { one };
     let partial = match kind {
         Fresnel::Exact => exact(l, at.cosine, l.sqrt(l.max(at.g_squared, l.f(0.0)))),
         // Report eq. 8: the same cosine both ways.
         Fresnel::Schlick if mutant!("eq8_inner_cosine") => schlick(l, at.eta, at.cosine),
         Fresnel::Schlick => schlick(l, at.eta, l.select(at.denser, at.cosine, at.cosine_refracted)),
     };
-    l.select(passes, l.min(partial, one), one)
+    l.select(passes, l.min(partial, one), total)
 }
 
 /// ½ A² (1 + B²) with A = (g − c)/(g + c), B = (c(g + c) − 1)/(c(g − c) + 1); unpolarised.

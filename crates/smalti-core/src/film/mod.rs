@@ -65,15 +65,30 @@ impl Pixel {
     }
 }
 
-/// What is known of a pixel: its value and how sure it is.
+/// What is known of a pixel: its value and how sure it is. As f32, which is more than it is sure of: an image has many.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// Mean of the samples.
-    pub mean: [f64; 3],
-    /// Variance of that mean.
-    pub variance: [f64; 3],
-    /// Complete rounds behind the variance, at least 2.
+    mean: [f32; 3],
+    standard_error: [f32; 3],
+    /// Complete rounds behind the standard error, at least 2.
     pub rounds: u32,
+}
+
+impl Estimate {
+    /// From the mean of a pixel's samples and the variance of that mean by `rounds` complete rounds.
+    pub fn new(mean: [f64; 3], variance: [f64; 3], rounds: u32) -> Self {
+        Self { mean: mean.map(|x| x as f32), standard_error: variance.map(|x| x.sqrt() as f32), rounds }
+    }
+
+    /// Mean of the samples.
+    pub fn mean(&self) -> [f64; 3] {
+        self.mean.map(f64::from)
+    }
+
+    /// Variance of that mean.
+    pub fn variance(&self) -> [f64; 3] {
+        self.standard_error.map(|error| f64::from(error) * f64::from(error))
+    }
 }
 
 /// A rectangle of the film with its own sample count.
@@ -137,15 +152,12 @@ impl Film {
         if self.samples().0 < 2 * ROUND {
             return None;
         }
-        let unknown = Estimate { mean: [0.0; 3], variance: [0.0; 3], rounds: 0 };
+        let unknown = Estimate::new([0.0; 3], [0.0; 3], 0);
         let mut estimates = vec![unknown; self.area.pixels()];
         for tile in &self.tiles {
             self.for_each(tile, |index, pixel| {
-                estimates[index] = Estimate {
-                    mean: pixel.mean(tile.samples),
-                    variance: pixel.variance_of_mean(tile.samples).unwrap_or_default(),
-                    rounds: tile.samples / ROUND,
-                };
+                let variance = pixel.variance_of_mean(tile.samples).unwrap_or_default();
+                estimates[index] = Estimate::new(pixel.mean(tile.samples), variance, tile.samples / ROUND);
             });
         }
         Some(estimates)
@@ -174,8 +186,8 @@ mod tests {
     }
 
     #[test]
-    fn a_pixel_takes_72_bytes() {
-        assert_eq!(size_of::<Pixel>(), 72);
+    fn a_pixel_takes_72_bytes_and_its_estimate_28() {
+        assert_eq!((size_of::<Pixel>(), size_of::<Estimate>()), (72, 28));
     }
 
     #[test]
