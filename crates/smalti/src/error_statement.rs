@@ -1,5 +1,8 @@
 //! The error that a render states of its image.
 
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
 use smalti_core::film::{Film, ROUND};
 use smalti_measure::ErrorStatement;
 
@@ -12,6 +15,29 @@ const SHARED: u32 = 1;
 /// The error of the image that `film` develops into; `None` with fewer than [`SAMPLES_NEEDED`].
 pub fn of(film: &Film) -> Option<ErrorStatement> {
     smalti_measure::error_statement(&film.estimates()?, film.area.width, SHARED)
+}
+
+/// The workers wait while the error is judged for a display: it may cost a part in so many of the time so far.
+const SHARE: u32 = 300;
+
+/// What judging a pixel is taken to cost until it has been measured.
+const GUESS: Duration = Duration::from_nanos(250);
+
+/// The relative error of a film of `pixels` pixels that is being rendered from now on; `None` also while it would cost
+/// more than a display may.
+pub fn live(pixels: usize) -> impl Fn(&Film) -> Option<f64> + Send + Sync {
+    let begun = Instant::now();
+    let cost = Mutex::new(Duration::from_nanos(GUESS.as_nanos() as u64 * pixels as u64));
+    move |film| {
+        let mut cost = cost.lock().unwrap_or_else(PoisonError::into_inner);
+        if begun.elapsed() < *cost * SHARE {
+            return None;
+        }
+        let asked = Instant::now();
+        let error = of(film)?;
+        *cost = asked.elapsed();
+        Some(error.relative_error)
+    }
 }
 
 #[cfg(test)]
@@ -29,6 +55,13 @@ mod tests {
             }
         }
         film
+    }
+
+    #[test]
+    fn a_film_in_the_making_is_judged_when_that_costs_little() {
+        let film = film(SAMPLES_NEEDED);
+        assert_eq!(live(1 << 32)(&film), None);
+        assert_eq!(live(0)(&film), Some(of(&film).unwrap().relative_error));
     }
 
     #[test]

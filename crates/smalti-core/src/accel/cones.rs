@@ -19,7 +19,7 @@ pub struct Parts {
 }
 
 impl Parts {
-    /// The parts of these primitives.
+    /// The parts of these primitives, given in increasing order.
     pub fn new(scene: &Scene, prims: &[u32]) -> Self {
         let (faces, spheres) = prims.split_at(prims.partition_point(|prim| (*prim as usize) < scene.faces.len()));
         let mut parts: Vec<[f32; 4]> =
@@ -81,7 +81,7 @@ fn around(points: &[[f32; 3]], spheres: &[[f32; 4]]) -> [f32; 4] {
         *middle = (low + high) / 2.0;
     }
     let reach = |[x, y, z, r]: [f32; 4]| {
-        let across = [x - centre[0], y - centre[1], z - centre[2]].map(f64::from);
+        let across = [(x, 0), (y, 1), (z, 2)].map(|(x, k)| f64::from(x) - f64::from(centre[k]));
         across.iter().map(|d| d * d).sum::<f64>().sqrt() + f64::from(r)
     };
     let radius = balls().map(reach).fold(0.0, f64::max);

@@ -11,8 +11,8 @@ use crate::geometry::{Ray, polygon, ray, sphere};
 use crate::lanes::{Lanes, V3};
 use crate::scene::Scene;
 
-/// Most corners, and most edges, that a list can hold.
-pub const CAPACITY: usize = 128;
+/// Most corners, and most edges, that a list can hold: corners are numbered in 8 bits.
+const CAPACITY: usize = 128;
 
 /// A compiled list.
 #[derive(Clone, Debug, Default)]

@@ -9,4 +9,4 @@ pub mod sobol;
 pub mod warp;
 pub mod xoshiro;
 
-pub use sampler::{Fan, Keys, Purpose, pair};
+pub use sampler::{Fan, Keys, Purpose, one_of, pair};

@@ -46,6 +46,26 @@ pub fn pair<L: Lanes>(l: L, kind: SamplerKind, keys: Keys<L>, bounce: u32, purpo
     Fan::new(l, kind, keys, bounce, purpose, 1).pair(l, 0)
 }
 
+/// Number `number` of `count` for `purpose`, scrambled by itself: what goes with a [`Fan`] of another purpose must not be
+/// a fan too, whose numbers differ by the same constants.
+#[inline(always)]
+pub fn one_of<L: Lanes>(
+    l: L,
+    kind: SamplerKind,
+    keys: Keys<L>,
+    bounce: u32,
+    purpose: Purpose,
+    (number, count): (u32, u32),
+) -> L::F {
+    let index = l.shr_by(keys.index, room(count)) | l.u(number.reverse_bits());
+    pair(l, kind, Keys { key: keys.key, index }, bounce, purpose).0
+}
+
+/// Binary digits of a number below `count`.
+fn room(count: u32) -> u32 {
+    count.next_power_of_two().ilog2()
+}
+
 /// The numbers of a vertex that asks for several pairs (shadow rays). Together with those of the other samples of the
 /// round they are one well spread set.
 #[derive(Clone, Copy)]
@@ -61,7 +81,7 @@ impl<L: Lanes> Fan<L> {
     pub fn new(l: L, kind: SamplerKind, keys: Keys<L>, bounce: u32, purpose: Purpose, count: u32) -> Self {
         let salt = mix(bounce.wrapping_mul(8).wrapping_add(purpose as u32).wrapping_add(0x51ed_270b));
         let seed = mix_lanes(l, keys.key ^ l.u(salt));
-        let room = count.next_power_of_two().ilog2();
+        let room = room(count);
         let base = match kind {
             SamplerKind::Sobol => sobol::scrambled_pair(l, keys.index, seed, room),
             SamplerKind::Independent => (l.shr_by(keys.index, room), seed),
@@ -180,30 +200,30 @@ mod tests {
         counts.map(|n| (f64::from(*n) - expected) * (f64::from(*n) - expected) / expected).sum()
     }
 
+    /// How often choice (rows) and place (columns) of the light samples of a vertex fall in each pair of halves.
+    fn halves(key: u32, sample: u32, count: u32) -> [[u32; 2]; 2] {
+        let keys = Keys { key, index: sample.reverse_bits() };
+        let fan = Fan::new(One, SamplerKind::Sobol, keys, 1, Purpose::LightPoint, count);
+        let mut cells = [[0; 2]; 2];
+        for number in 0..count {
+            let choice = one_of(One, SamplerKind::Sobol, keys, 1, Purpose::LightChoice, (number, count));
+            cells[usize::from(choice >= 0.5)][usize::from(fan.pair(One, number).0 >= 0.5)] += 1;
+        }
+        cells
+    }
+
     #[test]
-    fn fans_of_two_purposes_share_no_strata() {
-        let mut counts = [[0u32; 4]; 4];
-        let samples = 20_000u32;
-        for sample in 0..samples {
-            let keys = Keys { key: pixel_key(5, 0, 0, sample / 16), index: (sample % 16).reverse_bits() };
-            let [choice, place] = [Purpose::LightChoice, Purpose::LightPoint]
-                .map(|purpose| Fan::new(One, SamplerKind::Sobol, keys, 1, purpose, 4).pair(One, 2).0);
-            counts[(choice * 4.0) as usize][(place * 4.0) as usize] += 1;
-        }
-        let chi2 = chi_squared(counts.iter().flatten());
-        // 15 degrees of freedom (fewer, as rounds are stratified): above 45 by chance once in 10⁴.
-        assert!(chi2 < 45.0, "{counts:?}");
-        // In a round, which is one pixel's: each of the first purpose's strata meets more than one of the second's.
-        for round in 0..100 {
-            let mut pairs = std::collections::BTreeSet::new();
-            for (sample, number) in (0..16u32).flat_map(|sample| (0..4).map(move |number| (sample, number))) {
-                let keys = Keys { key: pixel_key(6, 0, 0, round), index: sample.reverse_bits() };
-                pairs.insert([Purpose::LightChoice, Purpose::LightPoint].map(|purpose| {
-                    (Fan::new(One, SamplerKind::Sobol, keys, 1, purpose, 4).pair(One, number).0 * 4.0) as u32
-                }));
+    fn the_choice_of_a_light_says_nothing_of_the_place_on_it() {
+        let mut sum = [[0u32; 2]; 2];
+        for vertex in 0..2000 {
+            let cells = halves(pixel_key(5, vertex / 16, 0, 0), vertex % 16, 16);
+            // Each choice has 8 of 16; that all 8 fall in one half is a chance of 2 in 2⁸ at worst.
+            assert!(cells.iter().all(|row| row.iter().sum::<u32>() == 8));
+            for (sum, cell) in sum.iter_mut().flatten().zip(cells.iter().flatten()) {
+                *sum += u32::from(*cell >= 2);
             }
-            assert!(pairs.len() >= 8, "round {round}: {pairs:?}");
         }
+        assert!(sum.iter().flatten().all(|spread| *spread > 1800), "{sum:?}");
     }
 
     #[test]

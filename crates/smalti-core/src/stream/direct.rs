@@ -16,7 +16,7 @@ use crate::accel::{Accel, Tracer};
 use crate::geometry::Ray;
 use crate::lanes::{Lanes, Rgb, V3};
 use crate::light::{sample::sample, table::LightTable};
-use crate::sampling::{Fan, Purpose};
+use crate::sampling::{Fan, Keys, Purpose, one_of};
 use crate::settings::Settings;
 
 /// What the stage needs to know.
@@ -136,9 +136,9 @@ struct Receiver<L: Lanes> {
     normal: V3<L>,
     leaves: L::U,
     active: L::M,
-    /// Numbers for the choice of a light, where there is one.
-    choice: Option<Fan<L>>,
-    /// Numbers for the place on it.
+    keys: Keys<L>,
+    bounce: u32,
+    /// Numbers for the place on a light.
     place: Fan<L>,
 }
 
@@ -159,17 +159,13 @@ impl<L: Lanes> Receiver<L> {
     fn new(l: L, context: &Context<'_>, bounce: u32, vertices: &Stream, at: usize) -> Self {
         let Settings { sampler, shadow_rays, .. } = *context.settings;
         let keys = vertices.keys(l, at);
-        let choice = if context.lights.rows.len() > 1 {
-            Some(Fan::new(l, sampler, keys, bounce, Purpose::LightChoice, shadow_rays))
-        } else {
-            None
-        };
         Self {
             point: vertices.v3(l, ORIGIN, at),
             normal: vertices.v3(l, DIRECTION, at),
             leaves: vertices.u(l, LEAVES, at),
             active: vertices.active(l, at),
-            choice,
+            keys,
+            bounce,
             place: Fan::new(l, sampler, keys, bounce, Purpose::LightPoint, shadow_rays),
         }
     }
@@ -177,16 +173,19 @@ impl<L: Lanes> Receiver<L> {
     /// Light sample `number`: a light, a point of it, and what arrives from there.
     #[inline(always)]
     fn sample(&self, l: L, context: &Context<'_>, number: u32) -> Arriving<L> {
-        let row = match self.choice {
-            Some(fan) => context.lights.choose(l, fan.pair(l, number).0),
-            None => l.u(0),
+        let Settings { sampler, shadow_rays, .. } = *context.settings;
+        let row = if context.lights.rows.len() > 1 {
+            let part = (number, shadow_rays);
+            context.lights.choose(l, one_of(l, sampler, self.keys, self.bounce, Purpose::LightChoice, part))
+        } else {
+            l.u(0)
         };
         let incident = sample(l, context.lights, row, (self.point, self.normal), self.place.pair(l, number));
         let cosine = self.normal.dot(l, incident.reach);
         // Lₑ · cosθ / (N·p + q) with q = cosθ/π: as cosθ / p = top / bottom, that is Lₑ · top / (N · bottom + top / π).
         let (top, bottom) = (cosine * incident.spread.0, incident.spread.1);
         let by_chance = if context.weighed { l.keep(incident.by_chance, top * l.f(FRAC_1_PI)) } else { l.f(0.0) };
-        let count = l.f(context.settings.shadow_rays as f32);
+        let count = l.f(shadow_rays as f32);
         let irradiance = incident.radiance.scale(top / l.mul_add(count, bottom, by_chance));
         // A light point behind the surface, or one that shows its back, has nothing to ask; nor has 0/0 or ∞/∞.
         let brightest = irradiance.max_component(l);

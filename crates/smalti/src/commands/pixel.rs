@@ -13,14 +13,21 @@ use crate::table::{Align, table};
 /// Samples that are listed one by one.
 const BRIGHTEST: usize = 8;
 
-/// One sample, bounce by bounce.
-#[derive(Serialize)]
-struct SampleRecord {
+/// What is looked at.
+#[derive(Debug, Serialize)]
+struct Subject {
     scene: String,
     scene_hash: String,
     pixel: [u32; 2],
-    sample: u32,
     seed: u64,
+}
+
+/// One sample, bounce by bounce.
+#[derive(Serialize)]
+struct SampleRecord {
+    #[serde(flatten)]
+    subject: Subject,
+    sample: u32,
     radiance: [f32; 3],
     vertices: Vec<VertexRecord>,
 }
@@ -40,11 +47,9 @@ struct VertexRecord {
 /// All samples of a pixel.
 #[derive(Debug, Serialize)]
 struct PixelRecord {
-    scene: String,
-    scene_hash: String,
-    pixel: [u32; 2],
+    #[serde(flatten)]
+    subject: Subject,
     spp: u32,
-    seed: u64,
     /// The pixel's value.
     mean: [f64; 3],
     /// Standard error of the mean; null with fewer than two complete rounds.
@@ -89,14 +94,20 @@ fn check_pixel(job: &Job, args: &PixelArgs) -> Result<(), Failure> {
     )))
 }
 
-fn sample_record(job: &Job, renderer: &Renderer, args: &PixelArgs, sample: u32) -> SampleRecord {
-    let (vertices, radiance) = renderer.replay((args.x, args.y), sample);
-    SampleRecord {
+fn subject(job: &Job, args: &PixelArgs) -> Subject {
+    Subject {
         scene: job.path.display().to_string(),
         scene_hash: job.scene_hash.clone(),
         pixel: [args.x, args.y],
-        sample,
         seed: job.settings.seed,
+    }
+}
+
+fn sample_record(job: &Job, renderer: &Renderer, args: &PixelArgs, sample: u32) -> SampleRecord {
+    let (vertices, radiance) = renderer.replay((args.x, args.y), sample);
+    SampleRecord {
+        subject: subject(job, args),
+        sample,
         radiance,
         vertices: vertices.into_iter().map(vertex_record).collect(),
     }
@@ -116,11 +127,8 @@ fn pixel_record(job: &Job, renderer: &Renderer, args: &PixelArgs) -> PixelRecord
     let (pixel, nonfinite, brightest) = gather(replayed);
     let deviation = |variance: [f64; 3]| variance.map(f64::sqrt);
     PixelRecord {
-        scene: job.path.display().to_string(),
-        scene_hash: job.scene_hash.clone(),
-        pixel: [args.x, args.y],
+        subject: subject(job, args),
         spp: job.settings.spp,
-        seed: job.settings.seed,
         mean: pixel.mean(job.settings.spp),
         standard_error: pixel.variance_of_mean(job.settings.spp).map(deviation),
         nonfinite,
@@ -159,7 +167,7 @@ fn print_sample(args: &PixelArgs, record: SampleRecord) -> Result<(), Failure> {
     if args.json {
         return print::json(&record);
     }
-    let heading = format!("{}: pixel {} {}, sample {}\n", record.scene, args.x, args.y, record.sample);
+    let heading = format!("{}: pixel {} {}, sample {}\n", record.subject.scene, args.x, args.y, record.sample);
     let vertices = vertex_table(&record.vertices);
     print::result(&format!("{heading}{vertices}\n  radiance of the sample {}\n", triple(record.radiance)))
 }
@@ -187,7 +195,7 @@ fn print_pixel(args: &PixelArgs, record: PixelRecord) -> Result<(), Failure> {
     if args.json {
         return print::json(&record);
     }
-    let mut text = format!("{}: pixel {} {}, {} samples\n", record.scene, args.x, args.y, record.spp);
+    let mut text = format!("{}: pixel {} {}, {} samples\n", record.subject.scene, args.x, args.y, record.spp);
     text += &format!("  mean {}\n", triple(record.mean));
     if let Some(error) = record.standard_error {
         text += &format!("  standard error {}\n", triple(error));

@@ -90,14 +90,11 @@ fn perform(
 ) -> Result<Outcome, Failure> {
     let film = Film::new(renderer.settings().area(), work.tile);
     let (display, watch) = frontend::start(mode, title);
-    let watch = watch.map(|watch| Watch { error: Some(Box::new(live_error)), ..watch });
+    let error = error_statement::live(film.area.pixels());
+    let watch = watch.map(|watch| Watch { error: Some(Box::new(error)), ..watch });
     let outcome = smalti_scheduler::render(renderer, film, pool, &interrupt.cancel, watch);
     display.finish();
     outcome.map_err(Failure::bug)
-}
-
-fn live_error(film: &Film) -> Option<f64> {
-    error_statement::of(film).map(|error| error.relative_error)
 }
 
 fn interrupted(signal: i32, (least, most): (u32, u32), spp: u32) -> String {

@@ -141,9 +141,9 @@ const PERIOD: Duration = Duration::from_millis(125);
 /// The longest time between two looks.
 const LONGEST: Duration = Duration::from_secs(1);
 
-/// Time from one look to the next when a look takes `cost`: it may take a hundredth of what `workers` do meanwhile.
+/// Time from one look to the next when a look takes `cost`: it may take half a hundredth of what `workers` do meanwhile.
 fn period(cost: Duration, workers: usize) -> Duration {
-    (cost * 100 / workers.max(1) as u32).clamp(PERIOD, LONGEST)
+    (cost * 200 / workers.max(1) as u32).clamp(PERIOD, LONGEST)
 }
 
 /// Shows `events` until the sender is gone.
@@ -202,10 +202,10 @@ mod tests {
     }
 
     #[test]
-    fn looking_costs_a_hundredth_at_most() {
+    fn looking_costs_half_a_hundredth_at_most() {
         let ms = Duration::from_millis;
         assert_eq!(period(ms(0), 0), ms(125));
-        assert_eq!(period(ms(4), 2), ms(200));
+        assert_eq!(period(ms(4), 2), ms(400));
         assert_eq!(period(ms(4), 16), ms(125));
         assert_eq!(period(ms(40), 2), ms(1000));
     }
