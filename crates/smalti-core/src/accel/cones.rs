@@ -9,7 +9,7 @@ use crate::lanes::{Lanes, V3};
 use crate::scene::Scene;
 
 /// Most parts that are told apart; more are taken as one.
-const MOST_PARTS: usize = 64;
+const MOST_PARTS: usize = 128;
 
 /// Bounding spheres of the parts of a set of occluders.
 #[derive(Clone, Debug, Default)]

@@ -12,7 +12,7 @@ use crate::lanes::{Lanes, V3};
 use crate::scene::Scene;
 
 /// Most corners, and most edges, that a list can hold: corners are numbered in 8 bits.
-const CAPACITY: usize = 128;
+const CAPACITY: usize = 256;
 
 /// A compiled list.
 #[derive(Clone, Debug, Default)]

@@ -20,9 +20,10 @@ pub const MISS: u32 = u32::MAX;
 /// origin's distance: the tree visits boxes that begin this much behind the nearest hit.
 pub const SLACK: f32 = 1.0 / 8192.0;
 
-/// Most primitives that are tested one after the other. Measured on spheres and triangles in a box: the tree wins from
-/// about this many.
-pub const LIST_UP_TO: usize = 64;
+/// Most primitives that are tested one after the other. Measured on scattered spheres and separate triangles over a
+/// floor (AVX-512): the tree takes 5.5 and 3.2 times the list's time with 30 of them, 3.5 with 120 spheres, 2.9 with 78
+/// triangles. The lists end where corners no longer fit 8 bits, before the tree wins.
+pub const LIST_UP_TO: usize = 128;
 
 /// Some primitives of a scene, ready to be hit.
 #[derive(Clone, Debug)]
