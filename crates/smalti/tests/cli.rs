@@ -355,6 +355,11 @@ fn a_sample_is_replayed_bounce_by_bounce() {
 mod unix {
     use std::io::{BufRead, BufReader, Read};
     use std::process::{Child, ChildStderr};
+    use std::sync::Arc;
+    use std::sync::atomic::AtomicBool;
+
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::flag::register_conditional_shutdown;
 
     use super::*;
 
@@ -362,6 +367,11 @@ mod unix {
 
     /// Starts a render that takes long and waits until a pass of it is done.
     fn start(command: &mut Command) -> (Child, BufReader<ChildStderr>) {
+        // What this process ignores (in the background, under nohup) its children would ignore too; what it handles,
+        // they do not.
+        for signal in [SIGHUP, SIGINT, SIGTERM] {
+            register_conditional_shutdown(signal, 1, Arc::new(AtomicBool::new(true))).unwrap();
+        }
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         let mut events = BufReader::new(child.stderr.take().unwrap());
         let mut event = String::new();
