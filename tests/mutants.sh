@@ -19,7 +19,7 @@ for name in "${names[@]}"; do
     SMALTI_MUTANT=$name timeout 900 cargo test --package smalti-core --package smalti-tests --no-fail-fast >"$log" 2>&1
     code=$?
     killers=$(grep -E '^test .* \.\.\. FAILED' "$log" | sed -E 's/^test (.*) \.\.\. FAILED/\1/' | sort -u | head -3 | paste -sd, | sed 's/,/, /g')
-    if [ $code -eq 124 ]; then killers="did not end"; fi
+    if [ $code -eq 124 ]; then killers="${killers:+$killers, }did not end"; fi
     if grep -qE '^error(\[|:) ' "$log" && [ -z "$killers" ] && ! grep -q 'test result' "$log"; then
         echo "error: $name does not compile, see $log" >&2
         exit 2
