@@ -95,7 +95,7 @@ impl Plan {
         check(scene, settings)?;
         let prims: Vec<u32> = (0..scene.shades.len() as u32).collect();
         let everything = Accel::new(scene, &prims);
-        let in_the_way = occluders::of(scene);
+        let in_the_way = if samples_lights(scene, settings) { occluders::of(scene) } else { Vec::new() };
         let (occluders, parts) = (Accel::new(scene, &in_the_way), Parts::new(scene, &in_the_way));
         let (stages, columns) = (stages(scene, settings), columns(scene, settings));
         let max_bounces = settings.max_bounces.unwrap_or(MOST_BOUNCES).min(MOST_BOUNCES);
@@ -123,11 +123,16 @@ fn check(scene: &Scene, settings: &Settings) -> Result<(), PlanError> {
     Ok(())
 }
 
+/// Whether shadow rays are asked at all.
+fn samples_lights(scene: &Scene, settings: &Settings) -> bool {
+    scene.has(Class::Lambert) && settings.shadow_rays > 0 && !scene.lights.rows.is_empty()
+}
+
 /// Stages in the order in which they run.
 fn stages(scene: &Scene, settings: &Settings) -> Vec<Stage> {
     let path = settings.integrator == Integrator::Path;
     let lambert = scene.has(Class::Lambert);
-    let samples_lights = lambert && settings.shadow_rays > 0 && !scene.lights.rows.is_empty();
+    let samples_lights = samples_lights(scene, settings);
     let fresnel = settings.fresnel;
     let glass = if path { Stage::Dielectric(fresnel, settings.sampler) } else { Stage::Split(fresnel) };
     let ending = if path { Ending::Roulette(settings.sampler) } else { Ending::Threshold(LEAST_CONTRIBUTION) };

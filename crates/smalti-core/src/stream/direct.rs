@@ -98,11 +98,12 @@ fn unstopped<L: Lanes>(
 ) -> Rgb<L> {
     let receiver = Receiver::new(l, context, bounce, vertices, at);
     cones.look_from(l, receiver.point);
-    let mut sum = V3::splat(l, [0.0; 3]);
+    let nothing = V3::splat(l, [0.0; 3]);
+    let mut sum = nothing;
     for number in 0..context.settings.shadow_rays {
         let Arriving { reach, irradiance, surface, counts } = receiver.sample(l, context, number);
         let doubt = counts & cones.may_stop(l, reach);
-        sum = sum + kept(l, counts & !doubt, irradiance);
+        sum = sum + V3::select(l, counts & !doubt, irradiance, nothing);
         if l.any(doubt) {
             let mut push = doubtful.push(l, doubt);
             push.v3(ORIGIN, receiver.point).v3(DIRECTION, reach).v3(THROUGHPUT, irradiance);
@@ -193,11 +194,6 @@ impl<L: Lanes> Receiver<L> {
         let counts = self.active & l.lt(l.f(0.0), cosine) & arrives;
         Arriving { reach: incident.reach, irradiance, surface: incident.surface, counts }
     }
-}
-
-#[inline(always)]
-fn kept<L: Lanes>(l: L, mask: L::M, radiance: Rgb<L>) -> Rgb<L> {
-    V3::new(l.keep(mask, radiance.x), l.keep(mask, radiance.y), l.keep(mask, radiance.z))
 }
 
 #[inline(always)]
