@@ -3,9 +3,10 @@
 use std::sync::atomic::AtomicU64;
 
 use rayon::prelude::*;
-use smalti_core::film::{Estimate, Film, Image};
+use smalti_core::film::{Estimate, Film, Image, ROUND, Tile};
 use smalti_core::lanes::Level;
-use smalti_core::render::Renderer;
+use smalti_core::photon::maps::Pilots;
+use smalti_core::render::{Renderer, Work, Workspace};
 use smalti_core::scene::World;
 use smalti_core::settings::Settings;
 
@@ -35,12 +36,7 @@ pub fn settings(width: u32, height: u32, spp: u32) -> Settings {
 pub fn render(world: &World, settings: &Settings) -> Rendered {
     let renderer = Renderer::new(world, settings.clone(), Level::available()[0]).expect("the settings suit the scene");
     let mut film = Film::new(settings.area(), 8);
-    let progress = AtomicU64::new(0);
-    let works: Vec<_> = film
-        .tiles
-        .par_iter_mut()
-        .map_init(|| renderer.workspace(), |workspace, tile| renderer.advance(tile, settings.spp, workspace, &progress))
-        .collect();
+    let works = advance(&renderer, &mut film, settings.spp);
     for work in &works {
         assert_eq!(work.rejected, [], "samples that are not finite");
     }
@@ -51,6 +47,21 @@ pub fn render(world: &World, settings: &Settings) -> Rendered {
         None => (image.mean(), [f64::INFINITY; 3]),
     };
     Rendered { image, mean, standard_error, pixels, capped: works.iter().map(|work| work.capped).sum() }
+}
+
+/// Adds samples until every pixel has `spp`: round by round where each round has photons of its own.
+fn advance(renderer: &Renderer, film: &mut Film, spp: u32) -> Vec<Work> {
+    let by_rounds = renderer.plan().photons.is_some();
+    let (progress, mut pilots, mut works) = (AtomicU64::new(0), Pilots::default(), Vec::new());
+    for round in 0..if by_rounds { spp.div_ceil(ROUND) } else { 1 } {
+        let maps = renderer.maps(round, pilots, &progress);
+        let until = if by_rounds { spp.min((round + 1) * ROUND) } else { spp };
+        let step =
+            |workspace: &mut Workspace, tile: &mut Tile| renderer.advance(tile, until, &maps, workspace, &progress);
+        works.par_extend(film.tiles.par_iter_mut().map_init(|| renderer.workspace(), step));
+        pilots = maps.pilots();
+    }
+    works
 }
 
 /// Mean over pixels and its standard error; pixels are independent.

@@ -7,6 +7,7 @@ pub mod geometry;
 pub mod lanes;
 pub mod light;
 mod mutant;
+pub mod photon;
 pub mod plan;
 pub mod render;
 mod replay;

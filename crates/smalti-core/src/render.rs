@@ -3,17 +3,19 @@
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::film::{ROUND, Tile};
+use crate::film::{ROUND, Shift, Tile};
 pub use crate::lanes::Level;
 use crate::lanes::dispatch;
+use crate::photon::gather::Gather;
+use crate::photon::maps::{Layer, Maps};
 pub use crate::plan::{Decision, PlanError};
 use crate::plan::{Plan, Stage};
 pub use crate::replay::Vertex;
 use crate::scene::{Scene, World, compile};
 use crate::settings::{Integrator, Settings};
 use crate::stream::{
-    MOST_SLOTS, Slots, Stream, dielectric, diffuse, direct, emission, environment, generate, intersect, mirror, sort,
-    surface,
+    Columns, MOST_SLOTS, Slots, Stream, dielectric, diffuse, direct, emission, environment, gather, generate,
+    intersect, mirror, sort, surface,
 };
 
 /// Paths that go through the stages together: enough to keep lanes full, few enough to stay in the cache.
@@ -79,6 +81,8 @@ pub struct Workspace {
     emitters: Stream,
     escaped: Stream,
     shadows: direct::Shadows,
+    asking: Stream,
+    first: Stream,
 }
 
 impl Renderer {
@@ -112,6 +116,11 @@ impl Renderer {
         self.level
     }
 
+    /// The level's token, for the dispatch of a stage.
+    pub(crate) fn token(&self) -> Option<fearless_simd::Level> {
+        self.token
+    }
+
     /// What the plan decided.
     pub fn decisions(&self) -> &[Decision] {
         &self.plan.decisions
@@ -132,12 +141,25 @@ impl Renderer {
             emitters: has(|stage| *stage == Stage::Emission),
             escaped: has(|stage| *stage == Stage::Environment),
             shadows: direct::Shadows::default(),
+            asking: Stream::new(if self.plan.photons.is_some() { BATCH } else { 0 }, Columns::default()),
+            first: has(|stage| *stage == Stage::Gather),
         }
     }
 
     /// Adds samples to `tile` until every pixel of it has `until` samples. `progress` counts the samples as they are
     /// finished (relaxed), for a display.
-    pub fn advance(&self, tile: &mut Tile, until: u32, workspace: &mut Workspace, progress: &AtomicU64) -> Work {
+    ///
+    /// # Panics
+    /// If the plan has photon maps, and a sample is not of the round that `maps` serve.
+    pub fn advance(
+        &self,
+        tile: &mut Tile,
+        until: u32,
+        maps: &Maps,
+        workspace: &mut Workspace,
+        progress: &AtomicU64,
+    ) -> Work {
+        assert!(self.plan.photons.is_none() || rounds(tile.samples, until).all(|round| round == maps.round));
         let mut work = Work::default();
         let pixels = tile.pixels.len();
         let at_once = pixels.min(BATCH);
@@ -147,7 +169,7 @@ impl Renderer {
             for first in (0..pixels).step_by(at_once) {
                 let batch = first..pixels.min(first + at_once);
                 workspace.pixels.set(tile.area, batch.start, batch.end);
-                self.trace(workspace, from..to, &mut work);
+                self.trace(workspace, from..to, maps, &mut work);
                 deposit(workspace, tile, batch.clone(), from..to, &mut work);
                 progress.fetch_add((batch.len() * (to - from) as usize) as u64, Ordering::Relaxed);
             }
@@ -157,7 +179,7 @@ impl Renderer {
     }
 
     /// Traces samples of the workspace's pixels to the end; their radiance is in its slots.
-    fn trace(&self, workspace: &mut Workspace, samples: Range<u32>, work: &mut Work) {
+    fn trace(&self, workspace: &mut Workspace, samples: Range<u32>, maps: &Maps, work: &mut Work) {
         self.generate(workspace, samples);
         work.rays.camera += workspace.rays.len() as u64;
         let asks = self.plan.has(|stage| matches!(stage, Stage::Direct { .. }));
@@ -165,7 +187,7 @@ impl Renderer {
             if bounce == self.plan.max_bounces && self.settings.max_bounces.is_none() {
                 work.capped += workspace.rays.len() as u64;
             }
-            let next = self.bounce(bounce, workspace, |_, _| {});
+            let next = self.bounce(bounce, maps, workspace, |_, _| {});
             if asks {
                 work.rays.shadow += workspace.diffuse.len() as u64 * u64::from(self.settings.shadow_rays);
             }
@@ -180,12 +202,13 @@ impl Renderer {
     pub(crate) fn bounce(
         &self,
         bounce: u32,
+        maps: &Maps,
         workspace: &mut Workspace,
         mut look: impl FnMut(&Self, &Workspace),
     ) -> ControlFlow<()> {
         let ends = bounce == self.plan.max_bounces;
         for stage in &self.plan.stages {
-            self.perform(*stage, bounce, ends, workspace);
+            self.perform(*stage, (bounce, ends), maps, workspace);
             if *stage == Stage::Intersect {
                 look(self, workspace);
             }
@@ -211,18 +234,21 @@ impl Renderer {
             first = rays.len();
         }
         assert!(first <= MOST_SLOTS);
-        slots.reset(first);
+        slots.reset(first, self.plan.photons.is_some());
     }
 
     /// Runs one stage over its stream: the one place where stages are told apart.
-    fn perform(&self, stage: Stage, bounce: u32, ends: bool, workspace: &mut Workspace) {
-        let Workspace { slots, rays, next, diffuse, mirror, dielectric, emitters, escaped, shadows, .. } = workspace;
+    fn perform(&self, stage: Stage, (bounce, ends): (u32, bool), maps: &Maps, workspace: &mut Workspace) {
+        let Workspace {
+            slots, rays, next, diffuse, mirror, dielectric, emitters, escaped, shadows, asking, first, ..
+        } = workspace;
         let (scene, settings, token) = (&self.scene, &self.settings, self.token);
         match stage {
             Stage::Intersect => dispatch!(token, l => intersect::run(l, &self.plan.everything, rays)),
             Stage::Sort => self.sort(ends, workspace),
             Stage::Emission => {
-                dispatch!(token, l => emission::run(l, scene, settings.shadow_rays, emitters, slots));
+                let in_map = self.plan.photons.as_ref().map(|photons| &photons.in_map[..]);
+                dispatch!(token, l => emission::run(l, scene, (settings.shadow_rays, in_map), emitters, slots));
             }
             Stage::Environment => {
                 let radiance = scene.environment.unwrap_or_default();
@@ -233,6 +259,14 @@ impl Renderer {
                 let Plan { occluders, parts, .. } = &self.plan;
                 let context = direct::Context { lights: &scene.lights, occluders, parts, settings, weighed };
                 dispatch!(token, l => direct::run(l, &context, bounce, diffuse, shadows, slots));
+            }
+            Stage::Caustic => {
+                let Some(context) = self.photons(bounce, maps, maps.caustic.as_ref()) else { return };
+                dispatch!(token, l => gather::caustic(l, &context, bounce, diffuse, asking, slots));
+            }
+            Stage::Gather => {
+                let Some(context) = self.photons(bounce, maps, maps.global.as_ref()) else { return };
+                dispatch!(token, l => gather::last(l, &context, diffuse, (asking, first), slots));
             }
             Stage::Diffuse => dispatch!(token, l => diffuse::run(l, settings.sampler, bounce, diffuse, next)),
             Stage::Mirror(ending) => {
@@ -246,6 +280,20 @@ impl Renderer {
                 dispatch!(token, l => dielectric::split(l, scene, fresnel, least, dielectric, next));
             }
         }
+    }
+
+    /// How a map is asked after `bounce` scattering events.
+    fn photons<'a>(&'a self, bounce: u32, maps: &'a Maps, layer: Option<&'a Layer>) -> Option<gather::Context<'a>> {
+        let photons = self.plan.photons.as_ref()?;
+        let Layer { pilot, map } = layer?;
+        let most_bounces = self.plan.max_bounces.checked_sub(1 + bounce)?;
+        Some(gather::Context {
+            gather: Gather { map, surfaces: &photons.surfaces, most_bounces },
+            pilot,
+            shrink: maps.shrink,
+            reference: photons.reference,
+            sampler: self.settings.sampler,
+        })
     }
 
     fn sort(&self, ends: bool, workspace: &mut Workspace) {
@@ -268,6 +316,11 @@ impl Renderer {
     }
 }
 
+/// Rounds that the samples `from..until` are of.
+fn rounds(from: u32, until: u32) -> impl Iterator<Item = u32> {
+    from / ROUND..until.div_ceil(ROUND)
+}
+
 /// An emptied stream with room for `waiting` paths, where the plan needs it.
 fn ready(stream: &mut Stream, waiting: usize, needed: bool) -> Option<&mut Stream> {
     stream.clear();
@@ -280,13 +333,29 @@ fn ready(stream: &mut Stream, waiting: usize, needed: bool) -> Option<&mut Strea
 /// Adds the slots of a batch to its pixels, in sample order.
 fn deposit(workspace: &Workspace, tile: &mut Tile, batch: Range<usize>, samples: Range<u32>, work: &mut Work) {
     let of_samples = workspace.slots.radiance().chunks_exact(batch.len());
-    for (sample, slots) in samples.zip(of_samples) {
+    for (sample, slots) in samples.clone().zip(of_samples) {
         for (pixel, radiance) in batch.clone().zip(slots) {
             let finite = radiance.iter().all(|x| x.is_finite());
             if !finite {
                 work.rejected.push(rejected(tile, pixel, sample));
             }
             tile.pixels[pixel].add(sample, if finite { *radiance } else { [0.0; 3] });
+        }
+    }
+    if !workspace.slots.shift().is_empty() {
+        deposit_shifts(workspace, tile, batch, samples);
+    }
+}
+
+/// Adds what photon radii add to its pixels.
+fn deposit_shifts(workspace: &Workspace, tile: &mut Tile, batch: Range<usize>, samples: Range<u32>) {
+    tile.shifts.resize(tile.pixels.len(), Shift::default());
+    for (sample, slots) in samples.zip(workspace.slots.shift().chunks_exact(batch.len())) {
+        for (pixel, shift) in batch.clone().zip(slots) {
+            if shift.iter().all(|x| x.is_finite()) {
+                let sum = &mut tile.shifts[pixel][(sample / ROUND % 2) as usize];
+                (0..3).for_each(|c| sum[c] += shift[c]);
+            }
         }
     }
 }

@@ -2,7 +2,11 @@
 
 use std::ops::ControlFlow;
 
+use std::sync::atomic::AtomicU64;
+
 use crate::accel::MISS;
+use crate::film::ROUND;
+use crate::photon::maps::Pilots;
 use crate::render::{Renderer, Workspace};
 use crate::scene::{Class, Origin};
 use crate::settings::Rect;
@@ -36,10 +40,11 @@ impl Renderer {
         let mut workspace = self.workspace();
         workspace.pixels.set(Rect { x: pixel.0, y: pixel.1, width: 1, height: 1 }, 0, 1);
         self.generate(&mut workspace, sample..sample + 1);
+        let maps = self.maps(sample / ROUND, Pilots::default(), &AtomicU64::new(0));
         let mut vertices = Vec::new();
         for bounce in 0..=self.plan().max_bounces {
             let first = vertices.len();
-            let next = self.bounce(bounce, &mut workspace, |renderer, workspace| {
+            let next = self.bounce(bounce, &maps, &mut workspace, |renderer, workspace| {
                 vertices.extend((0..workspace.rays.len()).map(|at| renderer.vertex(bounce, workspace, at)));
             });
             let radiance = workspace.slots.radiance()[0];
@@ -71,12 +76,6 @@ impl Renderer {
 }
 
 impl Class {
-    /// The class in an entry of [`Scene::classes`](crate::scene::Scene::classes).
-    fn of(code: u32) -> Self {
-        let known = [Class::Black, Class::Lambert, Class::Mirror, Class::Dielectric];
-        known[(code & ((1 << Class::BITS) - 1)) as usize % known.len()]
-    }
-
     /// The name that users read.
     fn name(self) -> &'static str {
         match self {

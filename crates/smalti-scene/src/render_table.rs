@@ -1,6 +1,6 @@
 //! `[render]`: settings that a scene file may suggest and the command line may override.
 
-use smalti_core::settings::{Fresnel, Integrator, MOST_SHADOW_RAYS, Rect, SamplerKind, Settings};
+use smalti_core::settings::{Fresnel, Integrator, MOST_PHOTONS, MOST_SHADOW_RAYS, Rect, SamplerKind, Settings};
 
 use crate::document::{Bounds, Key, Node, Section, key};
 use crate::error::Result;
@@ -21,9 +21,11 @@ const KEYS: &[Key] = &[
     key("jitter", "true"),
     key("exposure", "0.0"),
     key("tile", "32"),
+    key("photons", "262144"),
+    key("radius", "0.1"),
 ];
 
-const INTEGRATORS: [Integrator; 2] = [Integrator::Path, Integrator::Whitted];
+const INTEGRATORS: [Integrator; 4] = [Integrator::Auto, Integrator::Path, Integrator::Photon, Integrator::Whitted];
 const SAMPLERS: [SamplerKind; 2] = [SamplerKind::Sobol, SamplerKind::Independent];
 const FRESNELS: [Fresnel; 2] = [Fresnel::Exact, Fresnel::Schlick];
 
@@ -54,6 +56,10 @@ pub struct RenderTable {
     pub exposure: Option<f64>,
     /// `tile`, side of a tile in pixels, at least 1.
     pub tile: Option<u32>,
+    /// `photons` that are emitted for each round of samples.
+    pub photons: Option<u32>,
+    /// `radius` of the first round, metres, > 0.
+    pub radius: Option<f64>,
 }
 
 impl RenderTable {
@@ -77,6 +83,8 @@ impl RenderTable {
             jitter: section.read("jitter", Node::truth)?,
             exposure: section.read("exposure", |node| node.number(Bounds::STOPS))?,
             tile: section.read("tile", |node| node.count(1))?,
+            photons: section.read("photons", |node| node.whole(0, MOST_PHOTONS.into()))?.map(|photons| photons as u32),
+            radius: section.read("radius", |node| node.number(Bounds::POSITIVE))?,
         })
     }
 
@@ -85,7 +93,7 @@ impl RenderTable {
         let default = Settings::default();
         let [width, height] = self.size.unwrap_or([default.width, default.height]);
         Settings {
-            integrator: self.integrator.unwrap_or(default.integrator),
+            integrator: self.integrator.unwrap_or(Integrator::Auto),
             width,
             height,
             crop: self.crop,
@@ -97,6 +105,8 @@ impl RenderTable {
             fresnel: self.fresnel.unwrap_or(default.fresnel),
             jitter: self.jitter.unwrap_or(default.jitter),
             camera: default.camera,
+            photons: self.photons,
+            radius: self.radius,
         }
     }
 }
@@ -137,7 +147,8 @@ mod tests {
     fn every_setting_arrives() {
         let table = read(
             "[render]\nintegrator = 'whitted'\nsize = [4, 3]\ncrop = [1, 0, 3, 3]\nspp = 7\nshadow_rays = 0\nmax_bounces = 2\n\
-             sampler = 'independent'\nseed = 18446744073709551615\nfresnel = 'schlick'\njitter = false\nexposure = -1\ntile = 8\n",
+             sampler = 'independent'\nseed = 18446744073709551615\nfresnel = 'schlick'\njitter = false\nexposure = -1\ntile = 8\n\
+             photons = 10000000\nradius = 0.25\n",
         );
         let expected = RenderTable {
             integrator: Some(Integrator::Whitted),
@@ -152,6 +163,8 @@ mod tests {
             jitter: Some(false),
             exposure: Some(-1.0),
             tile: Some(8),
+            photons: Some(10_000_000),
+            radius: Some(0.25),
         };
         assert_eq!(table.unwrap(), expected);
         assert_eq!(read("").unwrap(), RenderTable::default());

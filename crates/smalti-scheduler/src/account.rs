@@ -5,7 +5,7 @@ use std::time::Duration;
 use smalti_core::film::Film;
 use smalti_core::render::{RayCounts, Work};
 
-use crate::{Outcome, Rejections, Timing};
+use crate::{Outcome, Photons, Rejections, Timing};
 
 /// What is known of a tile besides its pixels.
 #[derive(Clone, Debug, Default)]
@@ -52,7 +52,7 @@ pub(crate) fn least(film: &Film) -> Option<u32> {
 }
 
 /// Adds up the records of all tiles.
-pub(crate) fn outcome(film: Film, spp: u32, records: Vec<Record>, timing: Timing) -> Outcome {
+pub(crate) fn outcome(film: Film, spp: u32, records: Vec<Record>, photons: Photons, timing: Timing) -> Outcome {
     let mut outcome = Outcome {
         interrupted: least(&film).is_some_and(|least| least < spp),
         film,
@@ -60,6 +60,7 @@ pub(crate) fn outcome(film: Film, spp: u32, records: Vec<Record>, timing: Timing
         rays: RayCounts::default(),
         rejected: Rejections::default(),
         capped: 0,
+        photons,
         timing,
     };
     for record in records {

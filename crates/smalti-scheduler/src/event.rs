@@ -8,7 +8,7 @@ use smalti_core::film::Film;
 use smalti_core::render::{RayCounts, Rejected};
 use smalti_core::settings::Rect;
 
-use crate::{Progress, Timing};
+use crate::{Photons, Progress, Timing};
 
 /// A fact about a render. Every fact of a pass comes before its `PassFinished`; `Finished` is the last, and missing
 /// when a worker panicked.
@@ -28,6 +28,20 @@ pub enum Event {
         samples: u64,
         /// What each worker does at the moment.
         progress: Arc<Progress>,
+    },
+    /// Photons of a round set out; the book counts those that were traced.
+    PhotonsEmitted {
+        /// The round of samples that they serve, from 0.
+        round: u32,
+        /// How many.
+        photons: u64,
+    },
+    /// The photon maps of a round were built.
+    PhotonsStored {
+        /// The round of samples that they serve, from 0.
+        round: u32,
+        /// What became of them.
+        photons: Photons,
     },
     /// A unit of work was done.
     TileFinished {

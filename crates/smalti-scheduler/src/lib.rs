@@ -17,7 +17,7 @@ mod unit;
 
 pub use cancel::Cancel;
 pub use event::{ErrorOf, Event, Watch};
-pub use outcome::{Balance, Outcome, Panicked, Rejections, Timing};
+pub use outcome::{Balance, Outcome, Panicked, Photons, Rejections, Timing};
 pub use pool::{PoolError, pool};
 pub use progress::{Current, Progress};
 pub use render::render;

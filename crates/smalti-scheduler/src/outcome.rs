@@ -22,8 +22,36 @@ pub struct Outcome {
     pub rejected: Rejections,
     /// Paths that the hard cap on bounces ended.
     pub capped: u64,
+    /// What the photons of all rounds came to.
+    pub photons: Photons,
     /// Where the time went.
     pub timing: Timing,
+}
+
+/// What photons came to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Photons {
+    /// Photons that were emitted, those that were sent ahead included.
+    pub emitted: u64,
+    /// Photons that are in the maps.
+    pub stored: u64,
+    /// Photons that were not finite and were left out.
+    pub nonfinite: u64,
+    /// Bytes of the maps; of several rounds the most.
+    pub bytes: u64,
+    /// Time to emit, trace and build.
+    pub elapsed: Duration,
+}
+
+impl Photons {
+    /// Adds those of another round.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.emitted += other.emitted;
+        self.stored += other.stored;
+        self.nonfinite += other.nonfinite;
+        self.bytes = self.bytes.max(other.bytes);
+        self.elapsed += other.elapsed;
+    }
 }
 
 /// Samples that were not finite.

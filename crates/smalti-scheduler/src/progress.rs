@@ -10,6 +10,8 @@ use crossbeam::utils::CachePadded;
 pub struct Progress {
     start: Instant,
     slots: Vec<CachePadded<Slot>>,
+    /// Photons of the round that were traced.
+    photons: AtomicU64,
 }
 
 /// The unit that a worker has in hand.
@@ -39,12 +41,23 @@ struct Slot {
 impl Progress {
     /// A book for `workers` idle workers; time counts from `start`.
     pub fn new(workers: usize, start: Instant) -> Self {
-        Self { start, slots: (0..workers).map(|_| CachePadded::default()).collect() }
+        Self { start, slots: (0..workers).map(|_| CachePadded::default()).collect(), photons: AtomicU64::new(0) }
     }
 
     /// Number of workers.
     pub fn workers(&self) -> usize {
         self.slots.len()
+    }
+
+    /// Photons of the round that were traced.
+    pub fn photons(&self) -> u64 {
+        self.photons.load(Relaxed)
+    }
+
+    /// Notes that photons set out; returns the counter of those that were traced.
+    pub(crate) fn emit(&self) -> &AtomicU64 {
+        self.photons.store(0, Relaxed);
+        &self.photons
     }
 
     /// When the render began.

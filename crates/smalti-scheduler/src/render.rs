@@ -2,16 +2,17 @@
 
 use std::cmp::Reverse;
 use std::sync::atomic::AtomicU64;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, RwLock};
 use std::time::{Duration, Instant};
 
 use rayon::ThreadPool;
-use smalti_core::film::{Film, Tile};
+use smalti_core::film::{Film, ROUND, Tile};
+use smalti_core::photon::Maps;
 use smalti_core::render::{Renderer, Work};
 
 use crate::account::{Record, least, outcome};
 use crate::unit::{Audience, Unit, Worker};
-use crate::{Cancel, Event, Outcome, Panicked, Progress, Timing, Watch, pass};
+use crate::{Cancel, Event, Outcome, Panicked, Photons, Progress, Timing, Watch, pass};
 
 /// Adds samples to `film` until every pixel has as many as the renderer's settings ask for, on all workers of `pool`.
 /// A film that has samples already is continued.
@@ -25,13 +26,29 @@ pub fn render(
     cancel: &Cancel,
     watch: Option<Watch>,
 ) -> Result<Outcome, Panicked> {
+    let maps: RwLock<Option<Maps>> = RwLock::new(None);
+    let none = Maps::default();
+    let emit = |round, told: &dyn Fn(u64), done: &AtomicU64| {
+        let pilots = maps.read().unwrap_or_else(PoisonError::into_inner).as_ref().map(Maps::pilots);
+        // The last round's photons make room before the next ones are there.
+        *maps.write().unwrap_or_else(PoisonError::into_inner) = None;
+        told(renderer.photons_of_round(pilots.is_none()));
+        let made = pool.install(|| renderer.maps(round, pilots.unwrap_or_default(), done));
+        let (account, bytes) = (made.account(), made.bytes());
+        *maps.write().unwrap_or_else(PoisonError::into_inner) = Some(made);
+        Photons { stored: account.kept, nonfinite: account.nonfinite, bytes, ..Photons::default() }
+    };
     let job = Job {
         spp: renderer.settings().spp,
         seed: renderer.settings().seed,
         pool,
         cancel,
         workspace: &|| renderer.workspace(),
-        advance: &|tile: &mut Tile, until, workspace: &mut _, done: &_| renderer.advance(tile, until, workspace, done),
+        emit: renderer.plan().photons.is_some().then_some(&emit),
+        advance: &|tile: &mut Tile, until, workspace: &mut _, done: &_| {
+            let maps = maps.read().unwrap_or_else(PoisonError::into_inner);
+            renderer.advance(tile, until, maps.as_ref().unwrap_or(&none), workspace, done)
+        },
     };
     perform(&job, film, watch)
 }
@@ -43,8 +60,13 @@ struct Job<'a, F, A> {
     pool: &'a ThreadPool,
     cancel: &'a Cancel,
     workspace: &'a F,
+    /// Emits the photons of a round, where each round has its own.
+    emit: Option<&'a Emit<'a>>,
     advance: &'a A,
 }
+
+/// Emits the photons of a round: tells how many there will be, counts them as they are traced, and says what is stored.
+type Emit<'a> = dyn Fn(u32, &dyn Fn(u64), &AtomicU64) -> Photons + Sync + 'a;
 
 /// The workers of a render; each is locked by its own thread alone, so nobody ever waits for a lock.
 type Crew<W> = Vec<Mutex<Worker<W>>>;
@@ -62,24 +84,29 @@ fn perform<W: Send>(
     let progress = Arc::new(Progress::new(crew.len(), Instant::now()));
     let audience = Audience { progress: &progress, watch: watch.as_ref() };
     audience.tell(|| started(&film, job.spp, &progress));
-    let passes = run_passes(job, &mut film, &mut records, &crew, &audience)?;
+    let (passes, photons) = run_passes(job, &mut film, &mut records, &crew, &audience)?;
     let timing = timing(&film, &records, crew, progress.start().elapsed(), passes);
-    let outcome = outcome(film, job.spp, records, timing);
+    let outcome = outcome(film, job.spp, records, photons, timing);
     audience.tell(|| Event::Finished { interrupted: outcome.interrupted, timing: outcome.timing.clone() });
     Ok(outcome)
 }
 
-/// Performs passes until every pixel has its samples or someone cancels; returns how many were completed.
+/// Performs passes until every pixel has its samples or someone cancels; returns how many were completed,
+/// and what the photons came to.
 fn run_passes<W: Send>(
     job: &Job<impl Sync, impl Fn(&mut Tile, u32, &mut W, &AtomicU64) -> Work + Sync>,
     film: &mut Film,
     records: &mut [Record],
     crew: &Crew<W>,
     audience: &Audience,
-) -> Result<u32, Panicked> {
+) -> Result<(u32, Photons), Panicked> {
     let mut pass = 0;
     let mut judged = 0;
-    while let Some(until) = least(film).and_then(|done| pass::next(done, job.spp)) {
+    let mut emitted = Emitted::default();
+    while let Some(until) = least(film).and_then(|done| pass::next(done, job.spp, job.emit.is_some())) {
+        if let Some(emit) = job.emit {
+            emitted.enter((until - 1) / ROUND, emit, audience);
+        }
         run_pass(job, units(film, records, pass, until), crew, audience)?;
         if least(film) < Some(until) {
             break;
@@ -90,7 +117,31 @@ fn run_passes<W: Send>(
         });
         pass += 1;
     }
-    Ok(pass)
+    Ok((pass, emitted.all))
+}
+
+/// The photons so far.
+#[derive(Default)]
+struct Emitted {
+    round: Option<u32>,
+    all: Photons,
+}
+
+impl Emitted {
+    /// Sees to it that the photons are those of `round`.
+    fn enter(&mut self, round: u32, emit: &Emit, audience: &Audience) {
+        if self.round == Some(round) {
+            return;
+        }
+        self.round = Some(round);
+        let begun = Instant::now();
+        let progress = audience.progress;
+        let told = |photons| audience.tell(|| Event::PhotonsEmitted { round, photons });
+        let photons = emit(round, &told, progress.emit());
+        let photons = Photons { elapsed: begun.elapsed(), emitted: progress.photons(), ..photons };
+        self.all.add(&photons);
+        audience.tell(|| Event::PhotonsStored { round, photons });
+    }
 }
 
 /// Performs `units` in their order, as workers become free. Stops handing out when someone cancels or panics.
@@ -226,7 +277,11 @@ mod tests {
         advance: Fake,
     ) -> Result<Outcome, Panicked> {
         let pool = pool(threads).unwrap();
-        perform(&Job { spp, seed: 42, pool: &pool, cancel, workspace: &|| (), advance: &advance }, film, watch)
+        perform(
+            &Job { spp, seed: 42, pool: &pool, cancel, workspace: &|| (), emit: None, advance: &advance },
+            film,
+            watch,
+        )
     }
 
     fn facts(events: &Receiver<Event>) -> Vec<Event> {

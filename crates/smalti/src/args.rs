@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use smalti_core::settings::{MOST_SHADOW_RAYS, Rect};
+use smalti_core::settings::{MOST_PHOTONS, MOST_SHADOW_RAYS, Rect};
 
 use crate::names::{FresnelArg, IntegratorArg, SamplerArg, SimdArg};
-use crate::parse::{Size, parse_crop, parse_finite, parse_size, parse_threads, parse_threshold};
+use crate::parse::{Size, parse_crop, parse_finite, parse_length, parse_size, parse_threads, parse_threshold};
 
 /// A physically based CPU renderer for people who work in a terminal.
 #[derive(Debug, Parser)]
@@ -98,7 +98,8 @@ Ctrl-C keeps the picture so far; twice leaves at once.";
 #[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = "Image")]
 pub struct ImageArgs {
-    /// Light transport algorithm; whitted has no indirect diffuse light
+    /// Light transport algorithm: auto is path with photons where chance hardly finds the light; whitted has no indirect
+    /// diffuse light [default: the scene's, or auto]
     #[arg(long, value_name = "NAME")]
     pub integrator: Option<IntegratorArg>,
     /// Samples (camera paths) for each pixel
@@ -128,6 +129,12 @@ pub struct ImageArgs {
     /// Every sample passes through its pixel's centre (edges become jagged)
     #[arg(long)]
     pub no_jitter: bool,
+    /// Photons that are emitted for each round of 16 samples and each map; 0: none [default: by the size of the image]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=i64::from(MOST_PHOTONS)))]
+    pub photons: Option<u32>,
+    /// How far photons count in the first round, metres; it shrinks from round to round [default: by their density]
+    #[arg(long, value_name = "R", value_parser = parse_length)]
+    pub radius: Option<f64>,
     /// Reflectance of dielectrics
     #[arg(long, value_name = "NAME")]
     pub fresnel: Option<FresnelArg>,

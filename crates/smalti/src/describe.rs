@@ -15,6 +15,7 @@ pub fn describe(summary: &Summary) -> String {
         ("error", error(summary)),
         ("time", time(summary)),
         ("rays", rays(summary)),
+        ("photons", photons(summary)),
         ("memory", summary.peak_bytes.map(|bytes| in_words(bytes) + " at most").unwrap_or_default()),
         ("hash", summary.hash.clone()),
         ("again", summary.reproduce.clone().unwrap_or_default()),
@@ -82,6 +83,17 @@ fn rays(summary: &Summary) -> String {
     let speed = if per_second.is_finite() { format!("{:.1} M a second; ", per_second / 1e6) } else { String::new() };
     let length = summary.mean_path_length.map(|length| format!("; mean path length {length:.2}")).unwrap_or_default();
     format!("{speed}{} camera, {} scattered, {} shadow{length}", rays.camera, rays.scattered, rays.shadow)
+}
+
+fn photons(summary: &Summary) -> String {
+    let Summary { photons_emitted: emitted, photons_stored: stored, photon_bytes, photon_seconds, .. } = summary;
+    match emitted {
+        0 => String::new(),
+        _ => format!(
+            "{emitted} emitted, {stored} stored in {photon_seconds:.3} s; a round takes {}",
+            in_words(*photon_bytes)
+        ),
+    }
 }
 
 #[cfg(test)]

@@ -105,6 +105,8 @@ fn merge(scene: Settings, flags: &ImageArgs, world: &World) -> Result<Settings, 
         fresnel: flags.fresnel.map_or(scene.fresnel, Into::into),
         jitter: scene.jitter && !flags.no_jitter,
         camera: named.unwrap_or(scene.camera),
+        photons: flags.photons.or(scene.photons),
+        radius: flags.radius.or(scene.radius),
     })
 }
 
@@ -149,10 +151,18 @@ fn check_area(settings: &Settings) -> Result<(), Failure> {
 /// A film that the machine cannot hold is refused before it is allocated.
 fn check_memory(settings: &Settings, available: Option<u64>) -> Result<(), Failure> {
     let area = settings.area();
+    let photons = memory::photon_bytes(settings);
     let limit = available.unwrap_or(isize::MAX as u64).min(isize::MAX as u64);
     let needed = memory::film_bytes(area);
-    if needed.is_some_and(|bytes| bytes <= limit) {
+    if needed.is_some_and(|bytes| bytes <= limit.saturating_sub(photons)) {
         return Ok(());
+    }
+    if photons > limit / 2 {
+        let (count, needed) = (settings.photons_of_round(), memory::in_words(photons));
+        let has = memory::in_words(limit);
+        let message =
+            format!("{count} photons need up to {needed} of memory; this machine has {has}. Take fewer with --photons");
+        return Err(Failure::user(message));
     }
     let needed =
         needed.map_or("more memory than can be counted".into(), |bytes| memory::in_words(bytes) + " of memory");
@@ -204,6 +214,8 @@ mod tests {
             camera: Some("left".into()),
             no_jitter: true,
             fresnel: Some(FresnelArg::Schlick),
+            photons: Some(5),
+            radius: Some(0.5),
         };
         let expected = Settings {
             integrator: Integrator::Whitted,
@@ -218,6 +230,8 @@ mod tests {
             fresnel: Fresnel::Schlick,
             jitter: false,
             camera: 1,
+            photons: Some(5),
+            radius: Some(0.5),
         };
         assert_eq!(merge(Settings::default(), &flags, &world(&["right", "left"])), Ok(expected));
     }

@@ -1,12 +1,24 @@
 //! Memory: what a film takes, what the machine has, what this process used.
 
 use smalti_core::film::Pixel;
-use smalti_core::settings::Rect;
+use smalti_core::photon::Photons;
+use smalti_core::settings::{Integrator, Rect, Settings};
 
 /// Bytes that a render of `area` takes at least: the film and the linear image. `None`: more than can be counted.
 pub fn film_bytes(area: Rect) -> Option<u64> {
     let each = size_of::<Pixel>() + size_of::<[f32; 3]>();
     u64::from(area.width).checked_mul(u64::from(area.height))?.checked_mul(each as u64)
+}
+
+/// Bytes that the photon maps of a render may take at most while they are built.
+pub fn photon_bytes(settings: &Settings) -> u64 {
+    let (maps, stored) = match settings.integrator {
+        Integrator::Auto => (1, 1),
+        // The map of all light stores a photon at every diffuse bounce.
+        Integrator::Photon => (2, 4),
+        Integrator::Path | Integrator::Whitted => return 0,
+    };
+    u64::from(settings.photons_of_round()) * maps * stored * 2 * Photons::BYTES
 }
 
 /// The machine's memory in bytes, where the system tells (Linux).

@@ -7,13 +7,17 @@ use smalti_core::settings::{Fresnel, Integrator, SamplerKind};
 /// Names of integrators.
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 pub enum IntegratorArg {
+    Auto,
     Path,
+    Photon,
     Whitted,
 }
 
 impl From<IntegratorArg> for Integrator {
     fn from(typed: IntegratorArg) -> Self {
         match typed {
+            IntegratorArg::Auto => Integrator::Auto,
+            IntegratorArg::Photon => Integrator::Photon,
             IntegratorArg::Path => Integrator::Path,
             IntegratorArg::Whitted => Integrator::Whitted,
         }

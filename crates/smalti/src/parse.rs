@@ -61,6 +61,11 @@ pub fn parse_finite(text: &str) -> Result<f64, String> {
     number.filter(|number| number.is_finite()).ok_or("expected a number".into())
 }
 
+/// Reads a length above 0.
+pub fn parse_length(text: &str) -> Result<f64, String> {
+    parse_finite(text).ok().filter(|number| *number > 0.0).ok_or("expected a length greater than 0".into())
+}
+
 /// Reads a finite number that is at least 0.
 pub fn parse_threshold(text: &str) -> Result<f64, String> {
     parse_finite(text).ok().filter(|number| *number >= 0.0).ok_or("expected a number, 0 or larger".into())

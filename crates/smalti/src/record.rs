@@ -26,6 +26,10 @@ pub struct SettingsRecord {
     /// Null: roulette alone ends paths.
     pub max_bounces: Option<u32>,
     pub seed: u64,
+    /// Photons of a round and map; null: the integrator asks none.
+    pub photons: Option<u32>,
+    /// How far they count in the first round, metres; null: by their density.
+    pub radius: Option<f64>,
 }
 
 /// The settings of a job.
@@ -44,6 +48,8 @@ pub fn settings(job: &Job) -> SettingsRecord {
         shadow_rays: settings.shadow_rays,
         max_bounces: settings.max_bounces,
         seed: settings.seed,
+        photons: settings.integrator.asks_photons().then(|| settings.photons_of_round()),
+        radius: settings.radius,
     }
 }
 

@@ -33,6 +33,10 @@ fn flags(settings: &Settings, spp: u32, camera: &str) -> String {
     if !camera.is_empty() {
         flags += &format!(" --camera={}", quoted(camera));
     }
+    if settings.integrator.asks_photons() {
+        flags += &format!(" --photons {}", settings.photons_of_round());
+        flags += &settings.radius.map(|radius| format!(" --radius {radius}")).unwrap_or_default();
+    }
     if !settings.jitter {
         flags += " --no-jitter";
     }
@@ -74,6 +78,8 @@ mod tests {
             fresnel: Fresnel::Schlick,
             jitter: false,
             camera: 1,
+            photons: Some(77),
+            radius: Some(0.125),
         }
     }
 

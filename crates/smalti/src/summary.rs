@@ -33,7 +33,7 @@ pub struct Summary {
     pub tile: u32,
     /// Reading, compiling and building, from the start of the process.
     pub setup_seconds: f64,
-    /// No integrator of this version emits photons.
+    /// Emitting, tracing and storing photons, within `render_seconds`.
     pub photon_seconds: f64,
     pub render_seconds: f64,
     pub write_seconds: f64,
@@ -46,6 +46,10 @@ pub struct Summary {
     pub mean_path_length: Option<f64>,
     pub photons_emitted: u64,
     pub photons_stored: u64,
+    /// Photons that were not finite and were left out.
+    pub photons_nonfinite: u64,
+    /// Photon maps of a round.
+    pub photon_bytes: u64,
     /// The process's memory at its most, where the system tells.
     pub peak_bytes: Option<u64>,
     pub hash: String,
@@ -148,15 +152,17 @@ pub fn summary(job: &Job, work: Work, outcome: &Outcome, developed: &Developed) 
         simd: job.level.name(),
         tile: work.tile,
         setup_seconds: work.setup.as_secs_f64(),
-        photon_seconds: 0.0,
+        photon_seconds: outcome.photons.elapsed.as_secs_f64(),
         render_seconds: outcome.timing.elapsed.as_secs_f64(),
         write_seconds: 0.0,
         wall_seconds: 0.0,
         samples: outcome.samples,
         rays: RayRecord { camera, scattered, shadow },
         mean_path_length: (camera > 0).then(|| (camera + scattered) as f64 / camera as f64),
-        photons_emitted: 0,
-        photons_stored: 0,
+        photons_emitted: outcome.photons.emitted,
+        photons_stored: outcome.photons.stored,
+        photons_nonfinite: outcome.photons.nonfinite,
+        photon_bytes: outcome.photons.bytes,
         peak_bytes: None,
         hash: smalti_image::hash(&developed.image),
         nonfinite: outcome.rejected.count,

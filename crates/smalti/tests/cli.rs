@@ -95,7 +95,7 @@ fn help_shows_examples_and_exit_codes() {
     for part in ["render", "explain", "scaling", "compare", "pixel", "Examples:", "Exit codes:"] {
         assert!(help.contains(part), "{part}");
     }
-    for part in ["--shadow-rays", "--crop", "Ctrl-C", "[possible values: path, whitted]"] {
+    for part in ["--shadow-rays", "--crop", "Ctrl-C", "[possible values: auto, path, photon, whitted]"] {
         assert!(stdout(&run(&folder, "render --help")).contains(part), "{part}");
     }
     assert_eq!(run(&folder, "help scaling").status.code(), Some(0));
@@ -109,7 +109,8 @@ fn version_is_that_of_the_package() {
 #[test]
 fn flags_that_are_not_known() {
     refuses("render room.toml --sspp 4", &["--sspp", "--spp"]);
-    refuses("render room.toml --photons 10", &["--photons"]);
+    refuses("render room.toml --photons some", &["--photons"]);
+    refuses("render room.toml --radius 0", &["--radius", "greater than 0"]);
     refuses("rendr room.toml", &["render"]);
     refuses("", &["Usage:"]);
 }

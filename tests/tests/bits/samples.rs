@@ -3,6 +3,7 @@
 use std::sync::atomic::AtomicU64;
 
 use smalti_core::film::{Film, Pixel, Tile};
+use smalti_core::photon::Maps;
 use smalti_core::render::{Level, Renderer};
 use smalti_core::scene::World;
 use smalti_core::settings::{Integrator, Rect, SamplerKind, Settings};
@@ -29,7 +30,7 @@ fn advance(renderer: &Renderer, stops: &[u32]) -> Tile {
     let mut tile = Film::new(AREA, 64).tiles.remove(0);
     let mut workspace = renderer.workspace();
     for &stop in stops {
-        renderer.advance(&mut tile, stop, &mut workspace, &AtomicU64::new(0));
+        renderer.advance(&mut tile, stop, &Maps::default(), &mut workspace, &AtomicU64::new(0));
     }
     tile
 }
@@ -95,7 +96,7 @@ fn tiles_with_fewer_samples_are_the_beginning_of_theirs() {
     let mut film = Film::new(settings.area(), 7);
     let mut workspace = renderer.workspace();
     for (index, tile) in film.tiles.iter_mut().enumerate() {
-        renderer.advance(tile, uneven(index), &mut workspace, &AtomicU64::new(0));
+        renderer.advance(tile, uneven(index), &Maps::default(), &mut workspace, &AtomicU64::new(0));
     }
     for (index, tile) in film.tiles.iter().enumerate() {
         let short = Settings { spp: uneven(index), crop: Some(tile.area), ..settings.clone() };

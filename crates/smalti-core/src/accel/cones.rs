@@ -31,6 +31,11 @@ impl Parts {
         Self { spheres: parts }
     }
 
+    /// Their spheres: centre and radius.
+    pub fn spheres(&self) -> &[[f32; 4]] {
+        &self.spheres
+    }
+
     /// Number of parts.
     pub fn len(&self) -> usize {
         self.spheres.len()

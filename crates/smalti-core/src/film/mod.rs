@@ -100,7 +100,13 @@ pub struct Tile {
     pub samples: u32,
     /// Its pixels, row by row from the top.
     pub pixels: Vec<Pixel>,
+    /// What photon radii add to them; empty where no photons are asked.
+    pub shifts: Vec<Shift>,
 }
+
+/// What photon radii add to a pixel in error, as far as photons can tell: sums over the samples of even and of odd
+/// rounds. Rounds have photons of their own, so the product of the two halves has no bias by their noise.
+pub type Shift = [[f32; 3]; 2];
 
 /// The film of a render.
 #[derive(Clone, Debug)]
@@ -126,7 +132,12 @@ impl Film {
                     width: tile.min(area.width - x),
                     height: tile.min(area.height - y),
                 };
-                tiles.push(Tile { area: size, samples: 0, pixels: vec![Pixel::default(); size.pixels()] });
+                tiles.push(Tile {
+                    area: size,
+                    samples: 0,
+                    pixels: vec![Pixel::default(); size.pixels()],
+                    shifts: Vec::new(),
+                });
             }
         }
         Self { area, tiles }

@@ -115,6 +115,8 @@ pub trait Lanes: Copy {
     fn shr<const N: u32>(self, a: Self::U) -> Self::U;
     /// a >> n, zeros shifted in; n < 32.
     fn shr_by(self, a: Self::U, n: u32) -> Self::U;
+    /// a >> n, a shift of its own in every lane, zeros shifted in; n < 32.
+    fn shr_each(self, a: Self::U, n: Self::U) -> Self::U;
 
     /// Whether any lane is set.
     fn any(self, mask: Self::M) -> bool;

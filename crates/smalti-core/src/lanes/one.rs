@@ -132,6 +132,10 @@ impl Lanes for One {
         a >> n
     }
     #[inline(always)]
+    fn shr_each(self, a: u32, n: u32) -> u32 {
+        a >> n
+    }
+    #[inline(always)]
     fn any(self, mask: bool) -> bool {
         mask
     }

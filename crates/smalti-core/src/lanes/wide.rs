@@ -166,6 +166,10 @@ macro_rules! lanes {
                 a >> n
             }
             #[inline(always)]
+            fn shr_each(self, a: Self::U, n: Self::U) -> Self::U {
+                a >> n
+            }
+            #[inline(always)]
             fn any(self, mask: Self::M) -> bool {
                 mask.any_true()
             }

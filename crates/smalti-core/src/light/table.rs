@@ -2,6 +2,7 @@
 //! choice; and one row an emitter (a primitive that emits), for paths that hit it.
 
 use crate::lanes::{Lanes, V3};
+use crate::sampling::discrete;
 
 /// Kinds of rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,12 +104,9 @@ impl LightTable {
 
     /// Shares the choice out by power, once every light is there.
     pub fn finish(&mut self) {
-        let total: f64 = self.power.iter().sum();
-        let mut so_far = 0.0;
-        for index in 0..self.rows.len() {
-            let share = if total > 0.0 { self.power[index] / total } else { 0.0 };
-            so_far += share;
-            self.cumulative.push(so_far as f32);
+        let (cumulative, shares) = discrete::shares(&self.power);
+        self.cumulative = cumulative;
+        for (index, share) in shares.into_iter().enumerate() {
             self.rows[index][15] = if share > 0.0 { (self.area[index] / share) as f32 } else { f32::INFINITY };
             if let Some(emitter) = self.emitter_of[index] {
                 // The patches of one polygon have equal radiance, so share / area is the same for all of them.
@@ -116,26 +114,43 @@ impl LightTable {
                     (share / if self.kinds[index] == Kind::Sphere as u32 { 1.0 } else { self.area[index] }) as f32;
             }
         }
-        if total > 0.0 {
-            self.close_choice();
+    }
+
+    /// The row that `u` in [0, 1) falls on.
+    #[inline(always)]
+    pub fn choose<L: Lanes>(&self, l: L, u: L::F) -> L::U {
+        discrete::choose(l, &self.cumulative, u)
+    }
+
+    /// Power of a row, mean of the channels, in the frame's units.
+    pub fn power(&self, row: usize) -> f64 {
+        self.power[row]
+    }
+
+    /// Area of a patch or sphere in the frame; `None` for lights without one.
+    pub fn area(&self, row: usize) -> Option<f64> {
+        match self.rows[row] {
+            [_, _, _, r, ..] if self.kinds[row] == Kind::Sphere as u32 => {
+                Some(4.0 * core::f64::consts::PI * f64::from(r) * f64::from(r))
+            }
+            _ => self.emitter_of[row].map(|_| self.area[row]),
         }
     }
 
-    /// The row that `u` in [0, 1) falls on, by bisection.
-    #[inline(always)]
-    pub fn choose<L: Lanes>(&self, l: L, u: L::F) -> L::U {
-        let (mut low, mut step) = (l.u(0), self.rows.len().next_power_of_two() as u32 / 2);
-        let last = l.u(self.rows.len() as u32 - 1);
-        while step > 0 {
-            // `low + step - 1` is the last row below the upper half; rows past the end count as never reached.
-            let probe = l.add_u(low, l.u(step - 1));
-            let inside = l.lt_u(probe, last);
-            let bound = l.gather(&self.cumulative, l.select_u(inside, probe, last));
-            let up = inside & !l.lt(u, bound);
-            low = l.select_u(up, l.add_u(low, l.u(step)), low);
-            step /= 2;
+    /// Area of each emitter, in the frame.
+    pub fn areas(&self) -> Vec<f64> {
+        let mut areas = vec![0.0; self.emitters.len()];
+        for row in 0..self.rows.len() {
+            if let (Some(emitter), Some(area)) = (self.emitter_of[row], self.area(row)) {
+                areas[emitter as usize] += area;
+            }
         }
-        low
+        areas
+    }
+
+    /// The emitter that a row is part of; `None` for lights that no path can hit.
+    pub fn emitter_of(&self, row: usize) -> Option<u32> {
+        self.emitter_of[row]
     }
 
     fn emitter(&mut self, radiance: [f64; 3]) -> u32 {
@@ -174,13 +189,6 @@ impl LightTable {
         self.power.push(radiance.iter().sum::<f64>() / 3.0 * spread);
         self.area.push(if kind == Kind::Sphere { 1.0 } else { area });
         self.emitter_of.push(emitter);
-    }
-
-    /// The last row that has a share reaches up to 1, whatever rounding did.
-    fn close_choice(&mut self) {
-        if let Some(last) = self.power.iter().rposition(|power| *power > 0.0) {
-            self.cumulative[last..].fill(1.0);
-        }
     }
 }
 

@@ -3,7 +3,10 @@
 //! [`Plan::new`] is pure and the only place that decides. A plan is a list of stages; the executor runs them one after
 //! the other, bounce by bounce, and knows nothing else.
 
+mod photons;
 mod reasons;
+
+pub use photons::Photons;
 
 use crate::accel::cones::Parts;
 use crate::accel::{Accel, occluders};
@@ -37,6 +40,10 @@ pub enum Stage {
         /// Whether weighed against scattered rays.
         weighed: bool,
     },
+    /// The caustic map at diffuse vertices.
+    Caustic,
+    /// The map of all light at the second diffuse vertex, where the path ends.
+    Gather,
     /// The diffuse bounce.
     Diffuse,
     /// Reflection.
@@ -82,6 +89,8 @@ pub struct Plan {
     pub occluders: Accel,
     /// The parts it falls into.
     pub parts: Parts,
+    /// Photon maps.
+    pub photons: Option<Photons>,
     /// The decisions with their reasons.
     pub decisions: Vec<Decision>,
 }
@@ -97,9 +106,12 @@ impl Plan {
         let everything = Accel::new(scene, &prims);
         let in_the_way = if samples_lights(scene, settings) { occluders::of(scene) } else { Vec::new() };
         let (occluders, parts) = (Accel::new(scene, &in_the_way), Parts::new(scene, &in_the_way));
-        let (stages, columns) = (stages(scene, settings), columns(scene, settings));
+        let photons = Photons::new(scene, settings);
+        let stages = stages(scene, settings, photons.as_ref());
+        let columns = columns(scene, settings, photons.as_ref());
         let max_bounces = settings.max_bounces.unwrap_or(MOST_BOUNCES).min(MOST_BOUNCES);
-        let mut plan = Self { stages, columns, max_bounces, everything, occluders, parts, decisions: Vec::new() };
+        let mut plan =
+            Self { stages, columns, max_bounces, everything, occluders, parts, photons, decisions: Vec::new() };
         plan.decisions = reasons::of(&plan, scene, settings);
         Ok(plan)
     }
@@ -129,8 +141,8 @@ fn samples_lights(scene: &Scene, settings: &Settings) -> bool {
 }
 
 /// Stages in the order in which they run.
-fn stages(scene: &Scene, settings: &Settings) -> Vec<Stage> {
-    let path = settings.integrator == Integrator::Path;
+fn stages(scene: &Scene, settings: &Settings, photons: Option<&Photons>) -> Vec<Stage> {
+    let path = settings.integrator != Integrator::Whitted;
     let lambert = scene.has(Class::Lambert);
     let samples_lights = samples_lights(scene, settings);
     let fresnel = settings.fresnel;
@@ -142,7 +154,9 @@ fn stages(scene: &Scene, settings: &Settings) -> Vec<Stage> {
         (Stage::Emission, !scene.lights.emitters.is_empty()),
         (Stage::Environment, scene.environment.is_some()),
         (Stage::Surface, lambert && (path || samples_lights)),
+        (Stage::Gather, photons.is_some_and(|photons| photons.global.is_some())),
         (Stage::Direct { weighed: path }, samples_lights),
+        (Stage::Caustic, photons.is_some_and(|photons| photons.caustic.is_some())),
         (Stage::Diffuse, lambert && path),
         (Stage::Mirror(ending), scene.has(Class::Mirror)),
         (glass, scene.has(Class::Dielectric)),
@@ -152,7 +166,8 @@ fn stages(scene: &Scene, settings: &Settings) -> Vec<Stage> {
     .collect()
 }
 
-fn columns(scene: &Scene, settings: &Settings) -> Columns {
+fn columns(scene: &Scene, settings: &Settings, photons: Option<&Photons>) -> Columns {
     let two_ways = settings.shadow_rays > 0 && !scene.lights.emitters.is_empty() && scene.has(Class::Lambert);
-    Columns { pdf: two_ways && settings.integrator == Integrator::Path, eta: scene.has(Class::Dielectric) }
+    let pdf = photons.is_some() || (two_ways && settings.integrator != Integrator::Whitted);
+    Columns { pdf, eta: scene.has(Class::Dielectric), marks: photons.is_some() }
 }

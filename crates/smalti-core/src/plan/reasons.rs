@@ -1,7 +1,10 @@
 //! The plan in words: each decision with its reason, for `explain`.
 
-use super::{Decision, MOST_BOUNCES, Plan, Stage};
+use super::{Decision, MOST_BOUNCES, Plan, Stage, photons};
 use crate::film::Pixel;
+use crate::light::table::Kind;
+use crate::photon::pass::Pass;
+use crate::photon::{self, SUB_MAPS};
 use crate::scene::{Class, Scene};
 use crate::settings::{Integrator, Settings};
 
@@ -10,6 +13,7 @@ pub fn of(plan: &Plan, scene: &Scene, settings: &Settings) -> Vec<Decision> {
     let mut decisions = vec![accelerator(plan, scene)];
     decisions.extend(occluders(plan, scene));
     decisions.extend(lights(scene));
+    decisions.extend(photon_maps(plan, scene, settings));
     decisions.extend(plan.stages.iter().map(|stage| stage_reason(stage, scene, settings)));
     decisions.extend(absent(plan, scene));
     decisions.push(columns(plan));
@@ -67,6 +71,48 @@ fn lights(scene: &Scene) -> Option<Decision> {
     }
 }
 
+/// The photon maps, or why there are none.
+fn photon_maps(plan: &Plan, scene: &Scene, settings: &Settings) -> Vec<Decision> {
+    if !settings.integrator.asks_photons() {
+        return Vec::new();
+    }
+    let Some(photons) = &plan.photons else {
+        return vec![decision("left out", "photons", photons::missing(scene, settings), 0)];
+    };
+    let caustic = photons.caustic.as_ref().map(|pass| caustic_map(pass, photons, scene));
+    let all = |pass| map(pass, "map of all light", "asked behind the first diffuse bounce".into());
+    let global = photons.global.as_ref().map(all);
+    let radius = match settings.radius {
+        Some(radius) => format!("radius {radius} m"),
+        None => "radius by the density of photons sent ahead".into(),
+    };
+    let shrinks = "shrinks from round to round, so that noise and bias both vanish";
+    let surfaces = "photons count on their own surface only, by the part of their disc that lies on it";
+    let how = [
+        decision("photons", radius, shrinks, 0),
+        decision("photons", "surfaces and their borders", surfaces, photons.surfaces.bytes()),
+    ];
+    caustic.into_iter().chain(global).chain(how).collect()
+}
+
+fn caustic_map(pass: &Pass, photons: &super::Photons, scene: &Scene) -> Decision {
+    let (in_map, all) = (photons.in_map.iter().filter(|light| **light == 1).count(), photons.in_map.len());
+    let points = scene.lights.kinds.iter().filter(|kind| **kind == Kind::Point as u32).count();
+    let mut from = Vec::new();
+    from.extend(
+        (in_map > 0).then(|| format!("{in_map} of {}, found by chance too seldom", counted(all, "emitting primitive"))),
+    );
+    from.extend((points > 0).then(|| format!("{}, found by no chance", counted(points, "point light"))));
+    let targets = counted(pass.aim.targets.len(), "group");
+    map(pass, "caustic map", format!("from {}; aimed at {targets} of specular surfaces", from.join(" and ")))
+}
+
+fn map(pass: &Pass, name: &str, reason: String) -> Decision {
+    let count = pass.of_sub_map() * SUB_MAPS;
+    let choice = format!("{name}: {count} photons a round, in {SUB_MAPS} sub-maps");
+    decision("photons", choice, reason, u64::from(count) * photon::Photons::BYTES)
+}
+
 fn stage_reason(stage: &Stage, scene: &Scene, settings: &Settings) -> Decision {
     let count = |class: Class| {
         let mask = (1 << Class::BITS) - 1;
@@ -87,6 +133,8 @@ fn stage_reason(stage: &Stage, scene: &Scene, settings: &Settings) -> Decision {
         Stage::Direct { weighed: false } => {
             ("direct light", format!("{} a vertex", counted(rays as usize, "light sample")))
         }
+        Stage::Caustic => ("caustic map", "light by way of specular surfaces, from photons".into()),
+        Stage::Gather => ("final gather", "all light behind a diffuse bounce, from photons".into()),
         Stage::Diffuse => ("diffuse bounce", "indirect light by cosine-distributed rays".into()),
         Stage::Mirror(_) => ("mirror", of(Class::Mirror, "mirror")),
         Stage::Dielectric(..) => ("dielectric", of(Class::Dielectric, "dielectric")),
@@ -133,7 +181,9 @@ fn ending(plan: &Plan, settings: &Settings) -> Decision {
     let choice = format!("at most {} bounces", plan.max_bounces);
     let reason = match (settings.max_bounces, settings.integrator) {
         (Some(_), _) => "asked for; what longer paths carry is missing".into(),
-        (None, Integrator::Path) => format!("roulette ends paths without bias; {MOST_BOUNCES} is a counted cap"),
+        (None, Integrator::Path | Integrator::Auto | Integrator::Photon) => {
+            format!("roulette ends paths without bias; {MOST_BOUNCES} is a counted cap")
+        }
         (None, Integrator::Whitted) => {
             format!("branches end at diffuse surfaces or below 1/1024; {MOST_BOUNCES} is a counted cap")
         }

@@ -4,6 +4,7 @@
 //! sets keyed by purpose, so a purpose that a scene does not use shifts nothing elsewhere and no dimension limit is
 //! met. Below the stages, functions take numbers, never a sampler.
 
+pub mod discrete;
 pub mod sampler;
 pub mod sobol;
 pub mod warp;

@@ -20,6 +20,10 @@ pub enum Purpose {
     Lobe = 4,
     /// Roulette (first number).
     Roulette = 5,
+    /// Direction in which a photon is emitted.
+    Emission = 6,
+    /// Whether a photon map is asked (first number).
+    Gather = 7,
 }
 
 /// A path's identity as the sampler knows it.
@@ -33,11 +37,17 @@ pub struct Keys<L: Lanes> {
 
 /// Hash of (seed, pixel, round): the key of all samples of a pixel in one round.
 pub fn pixel_key(seed: u64, x: u32, y: u32, round: u32) -> u32 {
-    let mut h = mix(seed as u32 ^ 0x9e37_79b9);
-    for part in [(seed >> 32) as u32, x, y, round] {
-        h = mix(h.wrapping_mul(0x2c1b_3c6d) ^ mix(part.wrapping_add(0x68e3_1da4)));
-    }
-    h
+    key(mix(seed as u32 ^ 0x9e37_79b9), [(seed >> 32) as u32, x, y, round])
+}
+
+/// Hash of (seed, map, round, sub-map, set): the key of a set of up to 65,536 photons.
+pub fn photon_key(seed: u64, map: u32, round: u32, sub_map: u32, set: u32) -> u32 {
+    key(mix(seed as u32 ^ 0x85eb_ca6b), [(seed >> 32) as u32, map, round, sub_map, set])
+}
+
+fn key<const N: usize>(start: u32, parts: [u32; N]) -> u32 {
+    let absorb = |h: u32, part: u32| mix(h.wrapping_mul(0x2c1b_3c6d) ^ mix(part.wrapping_add(0x68e3_1da4)));
+    parts.into_iter().fold(start, absorb)
 }
 
 /// Two numbers in [0, 1) for `purpose` at `bounce`.

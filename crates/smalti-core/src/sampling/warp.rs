@@ -53,6 +53,15 @@ pub fn cone<L: Lanes>(l: L, opening: L::F, u: L::F, v: L::F) -> (V3<L>, L::F) {
     (V3::new(sine * c, sine * s, l.f(1.0) - below), below)
 }
 
+/// A direction uniform over the whole sphere; density 1 / 4π.
+#[inline(always)]
+pub fn sphere<L: Lanes>(l: L, u: L::F, v: L::F) -> V3<L> {
+    let z = l.mul_add(l.f(-2.0), u, l.f(1.0));
+    let across = l.sqrt(l.f(4.0) * u * (l.f(1.0) - u));
+    let (s, c) = sin_cos_turn(l, v);
+    V3::new(across * c, across * s, z)
+}
+
 /// Density of [`cone`], sr⁻¹.
 #[inline(always)]
 pub fn cone_pdf<L: Lanes>(l: L, opening: L::F) -> L::F {

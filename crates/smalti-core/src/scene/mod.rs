@@ -77,6 +77,12 @@ pub enum Class {
 impl Class {
     /// Bits that a class takes in [`Scene::classes`].
     pub const BITS: u32 = 4;
+
+    /// The class in an entry of [`Scene::classes`].
+    pub(crate) fn of(code: u32) -> Self {
+        let known = [Class::Black, Class::Lambert, Class::Mirror, Class::Dielectric];
+        known[(code & ((1 << Class::BITS) - 1)) as usize % known.len()]
+    }
 }
 
 /// Where a primitive comes from, for messages.
@@ -111,7 +117,12 @@ impl Scene {
         &self.corners[face.first as usize..(face.first + face.count) as usize]
     }
 
-    /// The class of a primitive.
+    /// The class of a primitive; `None` for no primitive.
+    pub fn class(&self, prim: u32) -> Option<Class> {
+        self.classes.get(prim as usize).map(|code| Class::of(*code))
+    }
+
+    /// Whether any primitive is of this class.
     pub fn has(&self, class: Class) -> bool {
         let mask = (1 << Class::BITS) - 1;
         self.classes.iter().any(|code| code & mask == class as u32)

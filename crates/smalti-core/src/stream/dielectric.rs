@@ -85,7 +85,7 @@ impl<L: Lanes> Crossing<L> {
             direction,
             throughput,
             leaves: self.hit.surface,
-            pdf: l.f(0.0),
+            pdf: hits.specular_pdf(l, at),
             eta: l.select(reflects, so_far, squeezed),
         }
     }

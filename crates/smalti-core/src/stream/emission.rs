@@ -2,7 +2,8 @@
 //!
 //! After a diffuse bounce the same light could have been found by a shadow ray, so the hit is weighed by the balance
 //! heuristic (Veach and Guibas 1995): pdf / (pdf + N · pdf of the light samples). After the camera or a specular bounce
-//! only a hit finds it, and it counts whole. Emission is counted once in every case.
+//! only a hit finds it, and it counts whole; unless it is in the caustic map, which has what a diffuse and then only
+//! specular bounces lead to. Emission is counted once in every case.
 
 use super::{DIRECTION, DISTANCE, ORIGIN, PRIM, SLOT, Slots, Stream, THROUGHPUT};
 use crate::lanes::{Lanes, V3};
@@ -12,7 +13,13 @@ use crate::scene::{Class, Scene};
 
 /// Adds what the emitters of this stream send back along their rays.
 #[inline(always)]
-pub fn run<L: Lanes>(l: L, scene: &Scene, shadow_rays: u32, hits: &Stream, slots: &mut Slots) {
+pub fn run<L: Lanes>(
+    l: L,
+    scene: &Scene,
+    (shadow_rays, in_map): (u32, Option<&[u32]>),
+    hits: &Stream,
+    slots: &mut Slots,
+) {
     for at in (0..hits.len()).step_by(L::WIDTH) {
         let prim = hits.u(l, PRIM, at);
         let code = l.gather_u(&scene.classes, prim);
@@ -34,7 +41,11 @@ pub fn run<L: Lanes>(l: L, scene: &Scene, shadow_rays: u32, hits: &Stream, slots
         let balanced = if mutant!("emission_counted_twice") { l.f(1.0) } else { balanced };
         // Report §2.7: light by shadow rays alone, so that specular chains never meet a lamp.
         let whole = if mutant!("no_light_after_specular") { l.f(0.0) } else { l.f(1.0) };
-        let weight = l.select(scattered, balanced, whole);
+        let mut weight = l.select(scattered, balanced, whole);
+        if let Some(in_map) = in_map {
+            let elsewhere = l.lt(by_scatter, l.f(0.0)) & l.eq_u(l.gather_u(in_map, number), l.u(1));
+            weight = l.select(elsewhere, l.f(0.0), weight);
+        }
 
         let radiance = V3::new(emitter[0], emitter[1], emitter[2]).scale(weight * hits.eta(l, at));
         slots.add(l, active & front, hits.u(l, SLOT, at), hits.v3(l, THROUGHPUT, at) * radiance);

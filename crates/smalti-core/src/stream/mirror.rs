@@ -36,7 +36,7 @@ pub fn run<L: Lanes>(l: L, scene: &Scene, ending: Ending, bounce: u32, hits: &St
             direction: reflect(l, incoming, hit.normal),
             throughput,
             leaves: hit.surface,
-            pdf: l.f(0.0),
+            pdf: hits.specular_pdf(l, at),
             eta: hits.eta(l, at),
         };
         next.scatter(l, hits, at, hits.active(l, at) & survives, &rays);

@@ -10,6 +10,7 @@ pub mod diffuse;
 pub mod direct;
 pub mod emission;
 pub mod environment;
+pub mod gather;
 pub mod generate;
 pub mod intersect;
 pub mod mirror;
@@ -39,8 +40,8 @@ pub const SLOT: usize = 11;
 pub const DISTANCE: usize = 12;
 /// Primitive that was hit.
 pub const PRIM: usize = 13;
-/// Solid-angle density with which the last scattering chose the direction; 0 after a specular one or the camera.
-/// Only where light can be found in two ways.
+/// Solid-angle density with which the last scattering chose the direction; 0 after a specular one or the camera, or −1
+/// after a diffuse and then only specular ones where the plan wants it marked. Only where light can be found in two ways.
 pub const PDF: usize = 14;
 /// Product of (n_i / n_t)² over the refractions so far. Only where something refracts.
 pub const ETA: usize = 15;
@@ -69,6 +70,8 @@ pub struct Columns {
     pub pdf: bool,
     /// [`ETA`].
     pub eta: bool,
+    /// Whether [`PDF`] is negative after specular bounces that follow on a diffuse one.
+    pub marks: bool,
 }
 
 impl Columns {
@@ -276,6 +279,15 @@ impl Stream {
     #[inline(always)]
     pub fn eta<L: Lanes>(&self, l: L, at: usize) -> L::F {
         if self.used.eta { self.f(l, ETA, at) } else { l.f(1.0) }
+    }
+
+    /// What [`PDF`] becomes by a specular bounce.
+    #[inline(always)]
+    pub fn specular_pdf<L: Lanes>(&self, l: L, at: usize) -> L::F {
+        if !self.used.marks {
+            return l.f(0.0);
+        }
+        l.select(l.eq(self.f(l, PDF, at), l.f(0.0)), l.f(0.0), l.f(-1.0))
     }
 
     /// The scattering density of a packet; 0 where light is found in one way only.

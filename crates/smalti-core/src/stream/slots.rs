@@ -6,13 +6,29 @@ use crate::lanes::{Lanes, Rgb};
 #[derive(Clone, Debug, Default)]
 pub struct Slots {
     radiance: Vec<[f32; 3]>,
+    /// Where photons are asked: what their radius may add, or half of it (see [`Slots::shift`]).
+    shift: Vec<[f32; 3]>,
 }
 
 impl Slots {
-    /// `count` black slots.
-    pub fn reset(&mut self, count: usize) {
+    /// `count` black slots; with `shift` also for what photon radii add.
+    pub fn reset(&mut self, count: usize, shift: bool) {
         self.radiance.clear();
         self.radiance.resize(count, [0.0; 3]);
+        self.shift.clear();
+        self.shift.resize(if shift { count } else { 0 }, [0.0; 3]);
+    }
+
+    /// For each sample the difference of what photons within their radius and within half of its disc say. As a disc's
+    /// bias goes with its area, that is half of the radiance that the radius adds in error.
+    pub fn shift(&self) -> &[[f32; 3]] {
+        &self.shift
+    }
+
+    /// Adds to the shift.
+    #[inline(always)]
+    pub fn add_shift<L: Lanes>(&mut self, l: L, mask: L::M, slot: L::U, difference: Rgb<L>) {
+        add(l, &mut self.shift, mask, slot, difference);
     }
 
     /// The samples.
@@ -24,20 +40,25 @@ impl Slots {
     /// [`SLOT`](super::SLOT).
     #[inline(always)]
     pub fn add<L: Lanes>(&mut self, l: L, mask: L::M, slot: L::U, radiance: Rgb<L>) {
-        let mut slots = [0; 16];
-        let mut columns = [[0.0; 16]; 3];
-        l.store_u(slot & l.u(0xffff), &mut slots);
-        l.store(radiance.x, &mut columns[0]);
-        l.store(radiance.y, &mut columns[1]);
-        l.store(radiance.z, &mut columns[2]);
-        let mut left = l.bitmask(mask);
-        while left != 0 {
-            let lane = left.trailing_zeros() as usize % 16;
-            let sum = &mut self.radiance[slots[lane] as usize];
-            for (sum, column) in sum.iter_mut().zip(&columns) {
-                *sum += column[lane];
-            }
-            left &= left - 1;
+        add(l, &mut self.radiance, mask, slot, radiance);
+    }
+}
+
+#[inline(always)]
+fn add<L: Lanes>(l: L, to: &mut [[f32; 3]], mask: L::M, slot: L::U, radiance: Rgb<L>) {
+    let mut slots = [0; 16];
+    let mut columns = [[0.0; 16]; 3];
+    l.store_u(slot & l.u(0xffff), &mut slots);
+    l.store(radiance.x, &mut columns[0]);
+    l.store(radiance.y, &mut columns[1]);
+    l.store(radiance.z, &mut columns[2]);
+    let mut left = l.bitmask(mask);
+    while left != 0 {
+        let lane = left.trailing_zeros() as usize % 16;
+        let sum = &mut to[slots[lane] as usize];
+        for (sum, column) in sum.iter_mut().zip(&columns) {
+            *sum += column[lane];
         }
+        left &= left - 1;
     }
 }

@@ -3,10 +3,12 @@
 use std::iter::once;
 
 use console::{measure_text_width, truncate_str};
+use smalti_scheduler::Photons;
 
 use super::picture::{Look, Picture};
 use super::tally::{Tally, Worker};
 use super::{Title, numbers};
+use crate::memory;
 
 /// Columns and lines of the terminal.
 pub type Size = (usize, usize);
@@ -68,6 +70,14 @@ pub fn heading(title: &Title) -> String {
     format!("{scene}  {width}x{height}  {spp} spp  {integrator}  {threads}  {level}")
 }
 
+/// What became of the photons of a round.
+pub fn photons(photons: &Photons) -> String {
+    let Photons { emitted, stored, bytes, elapsed, .. } = photons;
+    let (emitted, stored) = (numbers::count(*emitted), numbers::count(*stored));
+    let (bytes, elapsed) = (memory::in_words(*bytes), numbers::duration(*elapsed));
+    format!("photons of a round: {emitted} emitted, {stored} stored, {bytes}, {elapsed}")
+}
+
 fn painted(tally: &Tally, picture: Option<&Picture>, look: Look, (columns, lines): Size) -> Vec<String> {
     let fitted = picture.filter(|_| lines > 0).and_then(|picture| Some((picture, picture.fit(columns, lines)?)));
     let busy =
@@ -115,6 +125,7 @@ pub fn status(tally: &Tally, columns: usize) -> String {
         (2, Some(numbers::rays(tally.rays_per_second()))),
         (4, tally.error.map(|(error, spp)| format!("error {} at {spp} spp", numbers::share(error)))),
         (3, (tally.rejected > 0).then(|| format!("{} not finite", numbers::count(tally.rejected)))),
+        (1, tally.photons.map(|(done, all)| format!("photons {}", numbers::done(done, all)))),
         (1, remaining.map(|(low, high)| numbers::range(low, high) + " left")),
     ];
     let kept = |rank: usize| {

@@ -3,6 +3,8 @@
 //! Every object has `event`; times are in seconds, places are `[x, y, width, height]` in pixels of the whole image:
 //! - `started`: `scene, area, spp, integrator, threads, simd, setup_seconds, tiles` (their number)`, from_spp` (what
 //!   every pixel had before)`, samples` (to do, over all pixels)
+//! - `photons_emitted`: `round` (of samples, from 0)`, photons`
+//! - `photons_stored`: `round, emitted, stored, nonfinite, bytes` (of the maps)`, seconds` (to emit, trace and build)
 //! - `tile_finished`: `tile` (from 0)`, area, pass` (from 0)`, worker` (from 0)`, seconds, samples` (added, over all
 //!   pixels)`, rays { camera, scattered, shadow }, nonfinite` (samples that were not finite)
 //! - `sample_rejected`: `pixel [x, y], sample`; a sample that was not finite, the first ones of each tile
@@ -68,6 +70,13 @@ fn object(event: &Event, title: &Title) -> Value {
             "seconds": elapsed.as_secs_f64(), "samples": samples,
             "rays": { "camera": rays.camera, "scattered": rays.scattered, "shadow": rays.shadow },
             "nonfinite": rejected,
+        }),
+        Event::PhotonsEmitted { round, photons } => json!({
+            "event": "photons_emitted", "round": round, "photons": photons,
+        }),
+        Event::PhotonsStored { round, photons } => json!({
+            "event": "photons_stored", "round": round, "emitted": photons.emitted, "stored": photons.stored,
+            "nonfinite": photons.nonfinite, "bytes": photons.bytes, "seconds": photons.elapsed.as_secs_f64(),
         }),
         Event::SampleRejected(rejected) => json!({
             "event": "sample_rejected", "pixel": rejected.pixel, "sample": rejected.sample,

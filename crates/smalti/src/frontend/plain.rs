@@ -52,8 +52,11 @@ impl<W: Write> Plain<W> {
 
 impl<W: Write> View for Plain<W> {
     fn hear(&mut self, event: &Event, _: &Tally) {
-        if let Event::Started { .. } = event {
-            self.say(&frame::heading(&self.title));
+        match event {
+            Event::Started { .. } => self.say(&frame::heading(&self.title)),
+            // Every round has its own; the first tells what they are like.
+            Event::PhotonsStored { round: 0, photons } => self.say(&frame::photons(photons)),
+            _ => {}
         }
     }
 

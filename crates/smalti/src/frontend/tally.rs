@@ -31,6 +31,8 @@ pub struct Tally {
     pub rejected: u64,
     /// The last judgement of the error, with the samples a pixel that it was made at.
     pub error: Option<(f64, u32)>,
+    /// Photons that are on their way, and how many of them were traced at the last look.
+    pub photons: Option<(u64, u64)>,
     /// Every worker.
     pub workers: Vec<Worker>,
     /// Time since the start, at the last look.
@@ -79,6 +81,8 @@ impl Tally {
                 self.rays += rays;
                 self.rejected += rejected;
             }
+            Event::PhotonsEmitted { photons, .. } => self.photons = Some((0, *photons)),
+            Event::PhotonsStored { .. } => self.photons = None,
             Event::SampleRejected(_) => {}
             Event::PassFinished { samples, error, .. } => {
                 self.samples = *samples;
@@ -101,6 +105,7 @@ impl Tally {
             worker.current = progress.current(index, now);
         }
         self.done = self.done.max(self.finished + progress.in_hand()).min(self.total);
+        self.photons = self.photons.map(|(_, all)| (progress.photons().min(all), all));
         self.pace.note(self.elapsed, self.done);
     }
 

@@ -1,0 +1,50 @@
+//! A photon map: [`SUB_MAPS`] trees of photons, each an estimate of all the light.
+
+use super::kd_tree::Tree;
+use super::{Account, Kind, SUB_MAPS};
+
+/// The photons that a round of samples asks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Map {
+    /// What it holds.
+    pub kind: Kind,
+    /// The round that it serves.
+    pub round: u32,
+    /// Where the light of all its photons went.
+    pub account: Account,
+    /// The sub-maps.
+    pub trees: Vec<Tree>,
+}
+
+impl Map {
+    /// A map of these trees, in their order.
+    ///
+    /// # Panics
+    /// Unless there are [`SUB_MAPS`] of them.
+    pub fn new(kind: Kind, round: u32, trees: Vec<Tree>, account: Account) -> Self {
+        assert_eq!(trees.len(), SUB_MAPS as usize);
+        Self { kind, round, account, trees }
+    }
+
+    /// Number of photons.
+    pub fn len(&self) -> usize {
+        self.trees.iter().map(|tree| tree.len).sum()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Bytes that it takes.
+    pub fn bytes(&self) -> u64 {
+        self.trees.iter().map(Tree::bytes).sum()
+    }
+
+    /// Place, tag and flux of each photon, in the order of the trees.
+    pub fn photons(&self) -> impl Iterator<Item = ([f32; 4], [f32; 4])> {
+        self.trees
+            .iter()
+            .flat_map(|tree| (0..tree.blocks.len() * super::kd_tree::BLOCK).filter_map(|at| tree.photon(at)))
+    }
+}

@@ -1,0 +1,140 @@
+//! The maps of a round: emitted, traced and built, and how far their photons count.
+//!
+//! Rounds are independent, and their radius shrinks by r²ᵢ₊₁ = r²ᵢ (i + α) / (i + 1) (Knaus and Zwicker 2011, after
+//! Hachisuka and Jensen 2009), so that noise and bias of their mean both go to zero.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use rayon::prelude::*;
+
+use super::kd_tree::Tree;
+use super::pass::{Pass, PhotonWorkspace, Traced};
+use super::{Account, Batch, Map, Photons, Pilot, SUB_MAPS, pilot};
+use crate::render::Renderer;
+
+/// How fast the radius shrinks: of the rounds' mean, variance falls as n^−α and squared bias as n^(2α−2).
+pub const ALPHA: f64 = 2.0 / 3.0;
+
+/// The round of the photons that are sent ahead.
+const AHEAD: u32 = u32::MAX;
+
+/// What the samples of a round ask.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Maps {
+    /// The round.
+    pub round: u32,
+    /// What radii have shrunk to since the first round.
+    pub shrink: f32,
+    /// Light that came by specular surfaces.
+    pub caustic: Option<Layer>,
+    /// All light.
+    pub global: Option<Layer>,
+}
+
+/// A map, and what photons sent ahead say of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layer {
+    /// How far its photons count, and what to expect of them.
+    pub pilot: Arc<Pilot>,
+    /// The photons.
+    pub map: Map,
+}
+
+impl Maps {
+    /// Where the light of all photons went.
+    pub fn account(&self) -> Account {
+        let mut account = Account::default();
+        self.layers().for_each(|layer| account += &layer.map.account);
+        account
+    }
+
+    /// Bytes that they take.
+    pub fn bytes(&self) -> u64 {
+        self.layers().map(|layer| layer.map.bytes() + layer.pilot.bytes()).sum()
+    }
+
+    /// What was sent ahead, for the maps of another round.
+    pub fn pilots(&self) -> Pilots {
+        let of = |layer: &Option<Layer>| layer.as_ref().map(|layer| layer.pilot.clone());
+        Pilots { caustic: of(&self.caustic), global: of(&self.global) }
+    }
+
+    fn layers(&self) -> impl Iterator<Item = &Layer> {
+        self.caustic.iter().chain(&self.global)
+    }
+}
+
+/// What was sent ahead for each map.
+#[derive(Clone, Debug, Default)]
+pub struct Pilots {
+    caustic: Option<Arc<Pilot>>,
+    global: Option<Arc<Pilot>>,
+}
+
+impl Renderer {
+    /// Emits the photons of a round and builds its maps, on the threads of the current pool. `pilots` are those of
+    /// another round's maps, which are the same for all; without them photons are sent ahead. `progress` counts the
+    /// photons that were traced.
+    pub fn maps(&self, round: u32, pilots: Pilots, progress: &AtomicU64) -> Maps {
+        let Some(photons) = &self.plan().photons else { return Maps::default() };
+        let layer = |pass: &Option<Pass>, pilot: Option<Arc<Pilot>>| {
+            let pass = pass.as_ref()?;
+            let pilot = pilot.unwrap_or_else(|| Arc::new(self.pilot(pass, photons.radius, progress)));
+            Some(Layer { pilot, map: self.map(pass, round, progress) })
+        };
+        let (caustic, global) = (layer(&photons.caustic, pilots.caustic), layer(&photons.global, pilots.global));
+        Maps { round, shrink: shrink(round), caustic, global }
+    }
+
+    /// Photons that the maps of a round take, with those that are sent ahead or without.
+    pub fn photons_of_round(&self, ahead: bool) -> u64 {
+        let Some(photons) = &self.plan().photons else { return 0 };
+        let of = |pass: &Pass| u64::from(pass.of_sub_map() * SUB_MAPS) + if ahead { pilot::PHOTONS.into() } else { 0 };
+        photons.caustic.iter().chain(&photons.global).map(of).sum()
+    }
+
+    fn pilot(&self, pass: &Pass, radius: Option<f32>, progress: &AtomicU64) -> Pilot {
+        let ahead = Pass { photons: pilot::PHOTONS, ..pass.clone() };
+        let (photons, _) = collected(self.traced(&ahead, ahead.batches(AHEAD), progress));
+        Pilot::new(Tree::new(&photons), (pilot::PHOTONS, pass.of_sub_map()), radius)
+    }
+
+    /// One sub-map after the other becomes a tree, so that little more is held than the trees.
+    fn map(&self, pass: &Pass, round: u32, progress: &AtomicU64) -> Map {
+        let sub_map = |number: u32| {
+            let (photons, account) = collected(self.traced(pass, pass.sub_map(round, number), progress));
+            (Tree::new(&photons), account)
+        };
+        let (trees, accounts): (Vec<Tree>, Vec<Account>) = (0..SUB_MAPS).into_par_iter().map(sub_map).unzip();
+        let mut account = Account::default();
+        accounts.iter().for_each(|of_sub_map| account += of_sub_map);
+        Map::new(pass.kind, round, trees, account)
+    }
+
+    /// The batches, traced in parallel, in their order.
+    fn traced(&self, pass: &Pass, batches: Vec<Batch>, progress: &AtomicU64) -> Vec<Traced> {
+        let trace = |workspace: &mut PhotonWorkspace, batch: Batch| {
+            let traced = self.trace_photons(pass, batch, workspace);
+            progress.fetch_add(batch.count.into(), Ordering::Relaxed);
+            traced
+        };
+        batches.into_par_iter().map_init(PhotonWorkspace::new, trace).collect()
+    }
+}
+
+/// The photons of some batches, in their order, and where their light went.
+fn collected(batches: Vec<Traced>) -> (Photons, Account) {
+    let mut all = (Photons::default(), Account::default());
+    for traced in &batches {
+        all.0.append(&traced.photons);
+        all.1 += &traced.account;
+    }
+    all
+}
+
+/// The radius of a round by that of the first.
+fn shrink(round: u32) -> f32 {
+    let squared = (1..=round).map(f64::from).fold(1.0, |squared, i| squared * (i + ALPHA) / (i + 1.0));
+    squared.sqrt() as f32
+}

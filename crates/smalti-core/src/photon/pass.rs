@@ -1,0 +1,227 @@
+//! A photon pass: batches of photons through the stages, from the lights to where they are stored.
+//!
+//! A batch is a function of (scene, settings, seed, round, batch) and of nothing else; batches are traced in any order
+//! and collected by their number.
+
+use super::emit::{self, Emission};
+use super::{Account, Aim, Kind, Photons, SUB_MAPS, store};
+use crate::lanes::dispatch;
+use crate::render::Renderer;
+use crate::sampling::sampler::photon_key;
+use crate::scene::{Class, Scene};
+use crate::settings::{Fresnel, SamplerKind};
+use crate::stream::mirror::Ending;
+use crate::stream::{Columns, MOST_SLOTS, PRIM, Stream, dielectric, diffuse, intersect, mirror, sort, surface};
+
+/// Photons of a batch: as many as camera paths go through the stages together.
+const PHOTONS: u32 = 4096;
+
+/// Photons with one key: their numbers fit 16 bits.
+const SET: u32 = 1 << 16;
+
+const _: () = assert!(PHOTONS as usize <= MOST_SLOTS && SET.is_multiple_of(PHOTONS));
+
+/// Some photons of a map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Batch {
+    /// Which map.
+    pub kind: Kind,
+    /// The round that it serves.
+    pub round: u32,
+    /// The part of the map.
+    pub sub_map: u32,
+    /// Number of the first photon in the part.
+    pub first: u32,
+    /// Number of photons.
+    pub count: u32,
+    /// Photons of the whole part.
+    pub emitted: u32,
+}
+
+/// What a photon pass is to emit.
+#[derive(Clone, Debug)]
+pub struct Pass {
+    /// Which map.
+    pub kind: Kind,
+    /// Where its photons go.
+    pub aim: Aim,
+    /// Photons in all, over all sub-maps; rounded up to a multiple of their number.
+    pub photons: u32,
+}
+
+impl Pass {
+    /// Photons of a sub-map.
+    pub fn of_sub_map(&self) -> u32 {
+        self.photons.div_ceil(SUB_MAPS)
+    }
+
+    /// The batches of a round, sub-map after sub-map.
+    pub fn batches(&self, round: u32) -> Vec<Batch> {
+        (0..SUB_MAPS).flat_map(|sub_map| self.sub_map(round, sub_map)).collect()
+    }
+
+    /// The batches of a sub-map.
+    pub fn sub_map(&self, round: u32, sub_map: u32) -> Vec<Batch> {
+        let (kind, emitted) = (self.kind, self.of_sub_map());
+        let count = |first: u32| PHOTONS.min(emitted - first);
+        let batch = |first| Batch { kind, round, sub_map, first, count: count(first), emitted };
+        (0..emitted).step_by(PHOTONS as usize).map(batch).collect()
+    }
+}
+
+/// What became of a batch.
+#[derive(Clone, Debug, Default)]
+pub struct Traced {
+    /// The photons to keep.
+    pub photons: Photons,
+    /// Where the light went.
+    pub account: Account,
+}
+
+/// Buffers of a worker; made once and reused.
+#[derive(Default)]
+pub struct PhotonWorkspace {
+    photons: Stream,
+    next: Stream,
+    diffuse: Stream,
+    mirror: Stream,
+    dielectric: Stream,
+    escaped: Stream,
+    power: Vec<f32>,
+}
+
+impl PhotonWorkspace {
+    /// Empty buffers.
+    pub fn new() -> Self {
+        let stream = || Stream::new(PHOTONS as usize, Columns::default());
+        Self {
+            photons: stream(),
+            next: stream(),
+            diffuse: stream(),
+            mirror: stream(),
+            dielectric: stream(),
+            escaped: stream(),
+            power: Vec::new(),
+        }
+    }
+}
+
+impl Renderer {
+    /// Emits a batch of photons of `pass` and follows them to where they are stored.
+    pub fn trace_photons(&self, pass: &Pass, batch: Batch, workspace: &mut PhotonWorkspace) -> Traced {
+        let mut traced = Traced::default();
+        self.emit(pass, batch, workspace);
+        traced.account.photons = batch.count.into();
+        traced.account.emitted = sum(&workspace.photons, &workspace.power);
+        for bounce in 0..self.plan().max_bounces {
+            traced.account.rays += workspace.photons.len() as u64;
+            self.photon_bounce(batch.kind, bounce, workspace, &mut traced);
+            core::mem::swap(&mut workspace.photons, &mut workspace.next);
+            workspace.next.clear();
+            if workspace.photons.is_empty() {
+                break;
+            }
+        }
+        // What the limit on bounces cuts off ends where it is.
+        add(&mut traced.account.absorbed, sum(&workspace.photons, &workspace.power));
+        traced.account.kept = traced.photons.len() as u64;
+        traced
+    }
+
+    fn emit(&self, pass: &Pass, batch: Batch, workspace: &mut PhotonWorkspace) {
+        let PhotonWorkspace { photons, power, next, .. } = workspace;
+        let Batch { kind, round, sub_map, first, count, emitted } = batch;
+        let settings = self.settings();
+        let emission = Emission { lights: &self.scene().lights, aim: &pass.aim, sampler: settings.sampler, emitted };
+        let key = photon_key(settings.seed, kind as u32, round, sub_map, first / SET);
+        next.clear();
+        dispatch!(self.token(), l => emit::run(l, &emission, (key, first % SET, count), photons, power));
+    }
+
+    /// Takes photons through one bounce.
+    fn photon_bounce(&self, kind: Kind, bounce: u32, workspace: &mut PhotonWorkspace, traced: &mut Traced) {
+        let (scene, token) = (self.scene(), self.token());
+        dispatch!(token, l => intersect::run(l, &self.plan().everything, &mut workspace.photons));
+        self.sort_photons(workspace);
+        let PhotonWorkspace { photons, next, diffuse, mirror, dielectric, escaped, power } = workspace;
+        let account = &mut traced.account;
+        add(&mut account.escaped, sum(escaped, power));
+        add(&mut account.absorbed, on_black(scene, photons, power));
+        let landed = sum(diffuse, power);
+        if kind == Kind::Global || bounce > 0 {
+            account.nonfinite +=
+                dispatch!(token, l => store::run(l, scene, bounce, diffuse, power, &mut traced.photons));
+        }
+        match kind {
+            Kind::Caustic if bounce == 0 => add(&mut account.absorbed, landed),
+            Kind::Caustic => add(&mut account.stored, landed),
+            Kind::Global => {
+                dispatch!(token, l => surface::run(l, scene, diffuse));
+                let settings = self.settings();
+                dispatch!(token, l => diffuse::run(l, settings.sampler, bounce, diffuse, next));
+                add(&mut account.absorbed, difference(landed, sum(next, power)));
+            }
+        }
+        self.scatter_specular(bounce, (mirror, dielectric, next, power), account);
+    }
+
+    /// Mirrors and dielectrics, as the plan has them.
+    fn scatter_specular(
+        &self,
+        bounce: u32,
+        (mirror, dielectric, next, power): (&Stream, &Stream, &mut Stream, &[f32]),
+        account: &mut Account,
+    ) {
+        let (scene, token) = (self.scene(), self.token());
+        let (fresnel, sampler): (Fresnel, SamplerKind) = (self.settings().fresnel, self.settings().sampler);
+        let before = next.len();
+        if !mirror.is_empty() {
+            dispatch!(token, l => mirror::run(l, scene, Ending::Roulette(sampler), bounce, mirror, next));
+            let went_on = (before..next.len()).map(|at| store::flux(next, at, power));
+            add(&mut account.absorbed, difference(sum(mirror, power), total(went_on)));
+        }
+        if !dielectric.is_empty() {
+            dispatch!(token, l => dielectric::run(l, scene, (fresnel, sampler), bounce, dielectric, next));
+        }
+    }
+
+    fn sort_photons(&self, workspace: &mut PhotonWorkspace) {
+        let PhotonWorkspace { photons, diffuse, mirror, dielectric, escaped, .. } = workspace;
+        for stream in [&mut *diffuse, &mut *mirror, &mut *dielectric, &mut *escaped] {
+            stream.clear();
+            stream.reserve(photons.len());
+        }
+        let materials = [Some(diffuse), Some(mirror), Some(dielectric)];
+        let mut bins = sort::Bins { emitters: None, escaped: Some(escaped), materials };
+        dispatch!(self.token(), l => sort::run(l, self.scene(), false, photons, &mut bins));
+    }
+}
+
+/// Flux of all photons of a stream.
+fn sum(photons: &Stream, power: &[f32]) -> [f64; 3] {
+    total((0..photons.len()).map(|at| store::flux(photons, at, power)))
+}
+
+/// Flux that landed where nothing is reflected.
+fn on_black(scene: &Scene, photons: &Stream, power: &[f32]) -> [f64; 3] {
+    if !scene.has(Class::Black) {
+        return [0.0; 3];
+    }
+    let is_black = |at: &usize| scene.class(photons.value(PRIM, *at)) == Some(Class::Black);
+    total((0..photons.len()).filter(is_black).map(|at| store::flux(photons, at, power)))
+}
+
+fn total(fluxes: impl Iterator<Item = [f32; 3]>) -> [f64; 3] {
+    fluxes.fold([0.0; 3], |[r, g, b], flux| {
+        let [x, y, z] = flux.map(f64::from);
+        [r + x, g + y, b + z]
+    })
+}
+
+fn add(to: &mut [f64; 3], more: [f64; 3]) {
+    (0..3).for_each(|c| to[c] += more[c]);
+}
+
+fn difference(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|c: usize| a[c] - b[c])
+}

@@ -1,0 +1,102 @@
+//! How far photons count, by place: a few photons sent ahead tell where they lie dense.
+//!
+//! Where photons lie dense a small radius shows what is sharp, where they are few a large one is needed to find any. The
+//! radius must not depend on the photons that it is used for, or the estimate is biased however many there are (as that
+//! of the k nearest is); so it comes from photons of its own, and shrinks from round to round by one factor everywhere.
+
+use core::f32::consts::PI;
+
+use super::grid::Grid;
+use super::kd_tree::{BLOCK, Tree};
+use crate::lanes::{Lanes, V3};
+
+/// Photons that are sent ahead.
+pub const PHOTONS: u32 = 1 << 15;
+
+/// Photons of a sub-map that a point is to find in the first round.
+const WANTED: f32 = 4.0;
+
+/// The largest radius, in the frame (in which scenes are about 2 wide).
+const LARGEST: f32 = 0.05;
+
+/// The smallest radius: below it coordinates are too coarse.
+pub const SMALLEST: f32 = 1e-6;
+
+/// Photons that were sent ahead.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Pilot {
+    tree: Tree,
+    /// For each leaf of the tree, how far photons count there in the first round; or the same for everywhere.
+    radii: Vec<f32>,
+    /// Root of the mean square of the irradiance that a query finds: much more than the irradiance where photons are few
+    /// and far between. A guess.
+    expected: Grid,
+}
+
+/// A leaf, and what is to be expected there.
+struct Region {
+    radius: f32,
+    /// Mean square of the irradiance that a query finds, times the area by photon.
+    square: f32,
+}
+
+impl Pilot {
+    /// From photons sent ahead, `emitted` of them, for sub-maps of as many photons as `of_sub_map`. The radius is the
+    /// same everywhere if it is given.
+    pub fn new(tree: Tree, (emitted, of_sub_map): (u32, u32), radius: Option<f32>) -> Self {
+        let share = of_sub_map as f32 / emitted as f32;
+        let leaves: Vec<Region> = (0..tree.blocks.len()).map(|leaf| Region::new(&tree, leaf, share, radius)).collect();
+        let square = |number: usize| {
+            let ([x, y, z, _], _) = tree.photon(number)?;
+            Some(([x, y, z], leaves[number / BLOCK].square))
+        };
+        let squares: Vec<_> = (0..tree.flux.len()).filter_map(square).collect();
+        let expected = Grid::densities(&squares).map(f32::sqrt);
+        let mut radii: Vec<f32> = leaves.iter().map(|leaf| leaf.radius).collect();
+        if radii.is_empty() {
+            radii.push(radius.unwrap_or(LARGEST));
+        }
+        Self { tree, radii, expected }
+    }
+
+    /// Bytes that it takes.
+    pub fn bytes(&self) -> u64 {
+        self.tree.bytes() + self.expected.bytes() + size_of_val(&self.radii[..]) as u64
+    }
+
+    /// What a query is to expect at each point of a packet.
+    #[inline(always)]
+    pub fn expected<L: Lanes>(&self, l: L, point: V3<L>) -> L::F {
+        self.expected.at(l, point)
+    }
+
+    /// How far photons count at each point of a packet.
+    #[inline(always)]
+    pub fn radius<L: Lanes>(&self, l: L, point: V3<L>) -> L::F {
+        let leaves = l.u(self.radii.len() as u32);
+        let mut node = l.u(1);
+        loop {
+            let down = l.lt_u(node, leaves);
+            if !l.any(down) {
+                break;
+            }
+            let child = self.tree.child(l, l.select_u(down, node, l.u(1)), point).0;
+            node = l.select_u(down, child, node);
+        }
+        l.gather(&self.radii, l.add_u(node, l.add_u(!leaves, l.u(1))))
+    }
+}
+
+impl Region {
+    fn new(tree: &Tree, leaf: usize, share: f32, radius: Option<f32>) -> Self {
+        let (photons, flux, area) = tree.spread_of(leaf);
+        // Photons of a sub-map by area.
+        let density = share * photons as f32 / area;
+        let wanted = (WANTED / (PI * density)).sqrt();
+        let radius = radius.unwrap_or(wanted.min(LARGEST)).max(SMALLEST);
+        // A query finds n photons on its disc; the mean square of n is that of its mean, and the mean.
+        let disc = PI * radius * radius;
+        let (found, one) = (density * disc, flux / (photons as f32 * share * disc));
+        Self { radius, square: one * one * found * (found + 1.0) * area / photons as f32 }
+    }
+}

@@ -1,0 +1,240 @@
+//! Surfaces as photons see them: which faces are one surface, and where a surface ends.
+//!
+//! Photons of one surface count for each other: faces that share an edge and hardly bend there are one, a sphere is one.
+//! Where a surface ends (at a free edge, or where it bends sharply) part of the disc in which photons are gathered lies
+//! beyond it, and irradiance is flux by the rest: exact as long as the disc reaches over the edges of its own face only.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+
+use super::Tag;
+use crate::lanes::math::disc_segment;
+use crate::lanes::{Lanes, V3};
+use crate::sampling::warp;
+use crate::scene::{Face, Scene};
+
+/// Faces that bend less than this cosine across an edge are one surface.
+const SMOOTH: f64 = 0.9;
+
+/// Photons whose surface is turned further than this cosine do not count.
+const ALIKE: f32 = 0.7;
+
+/// Directions in which a disc that reaches over several edges is measured.
+const DIRECTIONS: usize = 32;
+
+/// Set in a group's number where the group is a sphere.
+const SPHERE: u32 = 1 << 31;
+
+/// What photons need to know of the primitives.
+#[derive(Clone, Debug, Default)]
+pub struct Surfaces {
+    /// For each primitive its normal, or centre, and the number of its group (bits).
+    records: Vec<[f32; 4]>,
+    /// Borders of faces: a unit vector m in the face, across the border and into the face, and o: m·x ≥ o inside.
+    borders: Vec<[f32; 4]>,
+    /// First border of each primitive, and the end of the last.
+    first: Vec<u32>,
+    /// Cosine and sine of directions all around.
+    directions: Vec<[f32; 2]>,
+}
+
+/// The surface that a primitive is part of.
+#[derive(Clone, Copy)]
+pub struct Group<L: Lanes> {
+    /// Number, the same for all its primitives.
+    pub number: L::U,
+    /// Normal of the primitive; the centre of a sphere.
+    pub normal: V3<L>,
+}
+
+impl Surfaces {
+    /// The surfaces of a scene.
+    pub fn new(scene: &Scene) -> Self {
+        let edges = edges(scene);
+        let mut leaders: Vec<u32> = (0..scene.shades.len() as u32).collect();
+        for (a, b) in edges.values().flat_map(|faces| smooth_pairs(scene, faces)) {
+            let (a, b) = (leader(&mut leaders, a), leader(&mut leaders, b));
+            leaders[a.max(b) as usize] = a.min(b);
+        }
+        let mut surfaces = Self { first: vec![0], directions: directions(), ..Self::default() };
+        for prim in 0..scene.shades.len() as u32 {
+            let group = leader(&mut leaders, prim);
+            let [x, y, z, ..] = scene.shades[prim as usize];
+            let kind = if (prim as usize) < scene.faces.len() { 0 } else { SPHERE };
+            surfaces.records.push([x, y, z, f32::from_bits(group | kind)]);
+            surfaces.borders.extend(borders(scene, prim, &edges));
+            surfaces.first.push(surfaces.borders.len() as u32);
+        }
+        surfaces
+    }
+
+    /// Bytes that it takes.
+    pub fn bytes(&self) -> u64 {
+        (self.records.len() * 16 + self.borders.len() * 16 + self.first.len() * 4) as u64
+    }
+
+    /// The surface of a primitive.
+    #[inline(always)]
+    pub fn group<L: Lanes>(&self, l: L, prim: L::U) -> Group<L> {
+        let [x, y, z, number] = l.gather_record(&self.records, prim);
+        Group { number: l.bits(number), normal: V3::new(x, y, z) }
+    }
+
+    /// Lanes where `normal` at `point` is on the side of the primitive's own normal.
+    #[inline(always)]
+    pub fn is_outside<L: Lanes>(&self, l: L, group: &Group<L>, (point, normal): (V3<L>, V3<L>)) -> L::M {
+        let is_sphere = l.lt_u(l.u(SPHERE - 1), group.number);
+        let own = V3::select(l, is_sphere, point - group.normal, group.normal);
+        l.lt(l.f(0.0), normal.dot(l, own))
+    }
+
+    /// Whether a photon lies on the surface `group`, on a face that is turned about as `normal` (on the side that asks).
+    #[inline(always)]
+    pub fn alike(&self, tag: Tag, group: u32, normal: [f32; 3]) -> bool {
+        let [x, y, z, number] = self.records[tag.prim() as usize];
+        // All of a sphere is one primitive: what lies on another side of it does not count.
+        if number.to_bits() != group || group >= SPHERE {
+            return false;
+        }
+        let turned = x * normal[0] + (y * normal[1] + z * normal[2]);
+        ALIKE <= if tag.outside() { turned } else { -turned }
+    }
+
+    /// The part in (0, 1] of the disc of `radius` about `point` that lies on the face `prim`'s surface.
+    #[inline(always)]
+    pub fn part_of_disc<L: Lanes>(&self, l: L, asks: L::M, prim: L::U, point: V3<L>, radius: L::F) -> L::F {
+        let prim = l.select_u(asks, prim, l.u(0));
+        let first = l.gather_u(&self.first, prim);
+        let end = l.gather_u(&self.first, l.add_u(prim, l.u(1)));
+        let one = l.f(1.0);
+        let (mut part, mut near, mut several) = (one, l.m(false), l.m(false));
+        let mut at = first;
+        let mut left = asks & l.lt_u(at, end);
+        while l.any(left) {
+            let cut = self.border(l, left, at, (point, radius)).distance;
+            let reaches = left & l.lt(cut, one);
+            several = several | (near & reaches);
+            near = near | reaches;
+            part = l.select(reaches, part * (one - disc_segment(l, cut)), part);
+            at = l.add_u(at, l.u(1));
+            left = left & l.lt_u(at, end);
+        }
+        if l.any(several) {
+            part = l.select(several, self.corner(l, (several, prim), (first, end), (point, radius)), part);
+        }
+        part
+    }
+
+    /// A border as seen from a point: how far it is in units of the radius, at least 0, and where it lies.
+    #[inline(always)]
+    fn border<L: Lanes>(&self, l: L, asks: L::M, at: L::U, (point, radius): (V3<L>, L::F)) -> Border<L> {
+        let [x, y, z, offset] = l.gather_record(&self.borders, l.select_u(asks, at, l.u(0)));
+        let inward = V3::new(x, y, z);
+        let distance = (inward.dot(l, point) - offset) / radius;
+        Border { distance: l.max(distance, l.f(0.0)), inward }
+    }
+
+    /// The part of a disc that reaches over several borders: the mean over directions of the squared distance to where
+    /// the disc or the surface ends.
+    #[inline(always)]
+    fn corner<L: Lanes>(
+        &self,
+        l: L,
+        (asks, prim): (L::M, L::U),
+        (first, end): (L::U, L::U),
+        place: (V3<L>, L::F),
+    ) -> L::F {
+        let (one, zero) = (l.f(1.0), l.f(0.0));
+        let normal = self.group(l, prim).normal;
+        let first_axis = warp::about(l, normal, V3::new(one, zero, zero));
+        let second_axis = warp::about(l, normal, V3::new(zero, one, zero));
+        let mut squares = [one; DIRECTIONS];
+        let (mut at, mut left) = (first, asks & l.lt_u(first, end));
+        while l.any(left) {
+            let Border { distance, inward } = self.border(l, left, at, place);
+            let (across, along) = (first_axis.dot(l, inward), second_axis.dot(l, inward));
+            for (square, [cosine, sine]) in squares.iter_mut().zip(&self.directions) {
+                let outward = -l.mul_add(across, l.f(*cosine), along * l.f(*sine));
+                let reach = distance / outward;
+                let ends = left & l.lt(zero, outward) & l.lt(reach * reach, *square);
+                *square = l.select(ends, reach * reach, *square);
+            }
+            at = l.add_u(at, l.u(1));
+            left = left & l.lt_u(at, end);
+        }
+        let mut sum = zero;
+        for square in squares {
+            sum = sum + square;
+        }
+        // A wedge narrower than the directions is still something.
+        l.max(sum, one) * l.f(1.0 / DIRECTIONS as f32)
+    }
+}
+
+/// A border as seen from a point.
+struct Border<L: Lanes> {
+    distance: L::F,
+    inward: V3<L>,
+}
+
+/// The directions in which a disc is measured.
+fn directions() -> Vec<[f32; 2]> {
+    let turn = |k: usize| 2.0 * core::f64::consts::PI * (k as f64 + 0.5) / DIRECTIONS as f64;
+    (0..DIRECTIONS).map(turn).map(|angle| [libm::cos(angle) as f32, libm::sin(angle) as f32]).collect()
+}
+
+/// An edge by the numbers of its corners, the lower one first.
+type Edge = (u32, u32);
+
+/// The faces at each edge.
+fn edges(scene: &Scene) -> HashMap<Edge, Vec<u32>> {
+    let mut edges: HashMap<Edge, Vec<u32>> = HashMap::new();
+    for (prim, face) in (0..).zip(&scene.faces) {
+        for (a, b) in corner_pairs(scene, face) {
+            edges.entry((a.min(b), a.max(b))).or_default().push(prim);
+        }
+    }
+    edges
+}
+
+/// The corners of a face, each with the next one.
+fn corner_pairs<'s>(scene: &'s Scene, face: &Face) -> impl Iterator<Item = (u32, u32)> + 's {
+    let corners = scene.face_corners(face);
+    corners.iter().zip(corners.iter().cycle().skip(1)).map(|(a, b)| (*a, *b))
+}
+
+/// Pairs of faces that hardly bend across an edge that both have.
+fn smooth_pairs(scene: &Scene, faces: &[u32]) -> Vec<(u32, u32)> {
+    let pairs = faces.iter().enumerate().flat_map(|(k, a)| faces[..k].iter().map(|b| (*a, *b)));
+    pairs.filter(|(a, b)| normal(scene, *a).dot(normal(scene, *b)).abs() >= SMOOTH).collect()
+}
+
+fn normal(scene: &Scene, prim: u32) -> DVec3 {
+    let [x, y, z, _] = scene.faces[prim as usize].plane.map(f64::from);
+    DVec3::new(x, y, z)
+}
+
+/// The borders of a primitive: the edges across which its surface does not go on.
+fn borders(scene: &Scene, prim: u32, edges: &HashMap<Edge, Vec<u32>>) -> Vec<[f32; 4]> {
+    let Some(face) = scene.faces.get(prim as usize) else { return Vec::new() };
+    let goes_on = |(a, b): &Edge| {
+        let others = edges[&(*a.min(b), *a.max(b))].iter().filter(|other| **other != prim);
+        others.into_iter().any(|other| normal(scene, prim).dot(normal(scene, *other)).abs() >= SMOOTH)
+    };
+    let point = |corner: u32| DVec3::from_array(scene.vertices[corner as usize].map(f64::from));
+    let border = |(a, b): Edge| {
+        let inward = normal(scene, prim).cross(point(b) - point(a)).normalize_or_zero();
+        let offset = inward.dot(point(a));
+        [inward.x as f32, inward.y as f32, inward.z as f32, offset as f32]
+    };
+    corner_pairs(scene, face).filter(|edge| !goes_on(edge)).map(border).collect()
+}
+
+fn leader(leaders: &mut [u32], mut prim: u32) -> u32 {
+    while leaders[prim as usize] != prim {
+        leaders[prim as usize] = leaders[leaders[prim as usize] as usize];
+        prim = leaders[prim as usize];
+    }
+    prim
+}

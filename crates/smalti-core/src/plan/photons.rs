@@ -1,0 +1,112 @@
+//! What photons a scene requires, and which lights they come from.
+
+use crate::accel::cones::Parts;
+use crate::photon::pass::Pass;
+use crate::photon::{Aim, Kind, Surfaces};
+use crate::scene::{Class, Scene};
+use crate::settings::{Integrator, Settings};
+
+/// Caustics are left to paths where what a chance hit brings, times this, is less than what chance brings in the mean:
+/// for a single light, where its area is at least this part of that of the scene's box.
+const FOUND_BY_CHANCE: f64 = 0.05;
+
+/// The photon maps of a plan.
+#[derive(Clone, Debug)]
+pub struct Photons {
+    /// Light that goes by specular surfaces to diffuse ones.
+    pub caustic: Option<Pass>,
+    /// All light.
+    pub global: Option<Pass>,
+    /// What the photons lie on.
+    pub surfaces: Surfaces,
+    /// For each emitter 1 where its caustics are in the map.
+    pub in_map: Vec<u32>,
+    /// A brightness that is typical of the scene: that of its box, were all power on it once.
+    pub reference: f32,
+    /// Radius of the first round, in the frame, where the settings say it.
+    pub radius: Option<f32>,
+}
+
+impl Photons {
+    /// The maps that this scene requires with these settings, if any.
+    pub fn new(scene: &Scene, settings: &Settings) -> Option<Self> {
+        let asked = settings.integrator.asks_photons() && settings.photons_of_round() > 0;
+        if !asked || !scene.has(Class::Lambert) {
+            return None;
+        }
+        let all = settings.integrator == Integrator::Photon;
+        let in_map = if all { vec![1; scene.lights.emitters.len()] } else { hard_to_find(scene) };
+        let caustic = caustic(scene, settings, &in_map);
+        let everywhere = Aim::everywhere(&scene.lights);
+        let global = (all && !everywhere.is_empty()).then(|| Pass {
+            kind: Kind::Global,
+            aim: everywhere,
+            photons: settings.photons_of_round(),
+        });
+        (caustic.is_some() || global.is_some()).then(|| Self {
+            caustic,
+            global,
+            surfaces: Surfaces::new(scene),
+            in_map,
+            reference: reference(scene),
+            radius: settings.radius.map(|radius| (radius * scene.frame.scale) as f32),
+        })
+    }
+}
+
+/// Why a scene requires no photon map.
+pub fn missing(scene: &Scene, settings: &Settings) -> &'static str {
+    let specular = scene.has(Class::Mirror) || scene.has(Class::Dielectric);
+    if settings.photons_of_round() == 0 {
+        "none are asked for"
+    } else if !scene.has(Class::Lambert) {
+        "no surface is diffuse"
+    } else if scene.lights.rows.is_empty() {
+        "no light has a place"
+    } else if !specular {
+        "nothing is specular: there are no caustics"
+    } else {
+        "chance finds the lights, or no light reaches what is specular"
+    }
+}
+
+/// The caustic pass, where light can go from a light to a specular caster and on to a diffuse receiver.
+fn caustic(scene: &Scene, settings: &Settings, in_map: &[u32]) -> Option<Pass> {
+    let specular = |prim: &u32| matches!(scene.class(*prim), Some(Class::Mirror | Class::Dielectric));
+    let casters: Vec<u32> = (0..scene.shades.len() as u32).filter(specular).collect();
+    let rows = 0..scene.lights.rows.len();
+    let emits: Vec<bool> =
+        rows.map(|row| scene.lights.emitter_of(row).is_none_or(|emitter| in_map[emitter as usize] == 1)).collect();
+    let aim = Aim::at(&scene.lights, Parts::new(scene, &casters).spheres(), &emits);
+    (!aim.is_empty()).then(|| Pass { kind: Kind::Caustic, aim, photons: settings.photons_of_round() })
+}
+
+/// For each emitter 1 where chance hardly finds it, or finds it with much more than it finds in the mean.
+fn hard_to_find(scene: &Scene) -> Vec<u32> {
+    let brightest = |[r, g, b, _]: &[f32; 4]| f64::from(r.max(*g).max(*b));
+    let emitters = || scene.lights.emitters.iter().map(brightest);
+    let mean =
+        emitters().zip(scene.lights.areas()).map(|(radiance, area)| radiance * area).sum::<f64>() / area_of_box(scene);
+    emitters().map(|radiance| u32::from(radiance * FOUND_BY_CHANCE > mean)).collect()
+}
+
+/// Area of the scene's bounding box, in the frame.
+fn area_of_box(scene: &Scene) -> f64 {
+    let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+    for prim in 0..scene.shades.len() as u32 {
+        let (from, to) = scene.bounds(prim);
+        for k in 0..3 {
+            low[k] = low[k].min(from[k]);
+            high[k] = high[k].max(to[k]);
+        }
+    }
+    let [x, y, z] = [0, 1, 2].map(|k: usize| f64::from(high[k] - low[k]).max(0.0));
+    2.0 * (x * y + y * z + z * x)
+}
+
+/// Radiance of the scene's box, were it white and lit once by all lights with a place; plus that of the environment.
+fn reference(scene: &Scene) -> f32 {
+    let power: f64 = (0..scene.lights.rows.len()).map(|row| scene.lights.power(row)).sum();
+    let sky = scene.environment.map_or(0.0, |[r, g, b]| (r + g + b) / 3.0);
+    (power / (core::f64::consts::PI * area_of_box(scene))) as f32 + sky
+}

@@ -1,0 +1,129 @@
+//! Light from photon maps at diffuse vertices.
+//!
+//! [`caustic`] adds what came by way of specular surfaces, at every vertex; what the map holds is not found a second
+//! time: emission after a diffuse and then only specular bounces does not count for lights that are in the map (see
+//! [`emission`](super::emission)). [`last`] adds all light where a path ends at its second diffuse vertex (the final
+//! gather of Jensen's second pass).
+//!
+//! Most vertices see little caustic light, and a query costs as much as a bounce. So a vertex asks with a chance in
+//! proportion to what it may expect, and counts accordingly more: unbiased whatever was expected, and as no contribution
+//! is then much larger than [`CERTAIN`] allows, with hardly any noise.
+
+use core::f32::consts::FRAC_1_PI;
+
+use super::{DIRECTION, ORIGIN, PRIM, SLOT, Slots, Stream, THROUGHPUT};
+use crate::lanes::{Lanes, V3};
+use crate::photon::gather::{Gather, Query};
+use crate::photon::pilot::Pilot;
+use crate::sampling::{Purpose, pair};
+use crate::settings::SamplerKind;
+
+/// The least chance with which a vertex asks for caustics.
+///
+/// With the reference room's error × time at 400 × 400 and 1 s, 1/16 is 5 % worse, 1/64 no better.
+const LEAST_CHANCE: f32 = 1.0 / 32.0;
+
+/// Contributions of this many times the scene's reference brightness are always asked for. 8 and 64 are worse.
+const CERTAIN: f32 = 16.0;
+
+/// What the stages need to know.
+pub struct Context<'a> {
+    /// The map.
+    pub gather: Gather<'a>,
+    /// What to expect of it.
+    pub pilot: &'a Pilot,
+    /// What the radius has shrunk to since the first round.
+    pub shrink: f32,
+    /// A brightness that is typical of the scene.
+    pub reference: f32,
+    /// Where numbers come from.
+    pub sampler: SamplerKind,
+}
+
+/// Adds the caustic light of every vertex of the stream. `asking` is a stream to work with.
+#[inline(always)]
+pub fn caustic<L: Lanes>(
+    l: L,
+    context: &Context<'_>,
+    bounce: u32,
+    vertices: &Stream,
+    asking: &mut Stream,
+    slots: &mut Slots,
+) {
+    asking.clear();
+    asking.reserve(vertices.len());
+    for at in (0..vertices.len()).step_by(L::WIDTH) {
+        let counts = counts(l, vertices, at);
+        let expected = context.pilot.expected(l, vertices.v3(l, ORIGIN, at));
+        let chance = expected * counts.max_component(l) * l.f(1.0 / (CERTAIN * context.reference));
+        let chance = l.min(l.max(chance, l.f(LEAST_CHANCE)), l.f(1.0));
+        let (u, _) = pair(l, context.sampler, vertices.keys(l, at), bounce, Purpose::Gather);
+        let asks = vertices.active(l, at) & l.lt(u, chance);
+        if l.any(asks) {
+            ask(l, (vertices, at), asks, counts.scale(l.f(1.0) / chance), asking);
+        }
+    }
+    answer(l, context, asking, slots);
+}
+
+/// Ends the paths whose last bounces were not all specular: adds all light that their vertices reflect. The others stay
+/// in `vertices`. `asking` and `first` are streams to work with.
+#[inline(always)]
+pub fn last<L: Lanes>(
+    l: L,
+    context: &Context<'_>,
+    vertices: &mut Stream,
+    (asking, first): (&mut Stream, &mut Stream),
+    slots: &mut Slots,
+) {
+    for stream in [&mut *asking, &mut *first] {
+        stream.clear();
+        stream.reserve(vertices.len());
+    }
+    for at in (0..vertices.len()).step_by(L::WIDTH) {
+        let (active, seen) = (vertices.active(l, at), l.eq(vertices.pdf(l, at), l.f(0.0)));
+        if l.any(active & seen) {
+            first.push_from(l, vertices, at, active & seen);
+        }
+        if l.any(active & !seen) {
+            ask(l, (vertices, at), active & !seen, counts(l, vertices, at), asking);
+        }
+    }
+    core::mem::swap(vertices, first);
+    answer(l, context, asking, slots);
+}
+
+/// What irradiance at the vertices of a packet counts for in their slots.
+#[inline(always)]
+fn counts<L: Lanes>(l: L, vertices: &Stream, at: usize) -> V3<L> {
+    vertices.v3(l, THROUGHPUT, at).scale(vertices.eta(l, at) * l.f(FRAC_1_PI))
+}
+
+/// Pushes vertices that ask, with what irradiance counts for.
+#[inline(always)]
+fn ask<L: Lanes>(l: L, (vertices, at): (&Stream, usize), asks: L::M, counts: V3<L>, asking: &mut Stream) {
+    let (point, normal) = (vertices.v3(l, ORIGIN, at), vertices.v3(l, DIRECTION, at));
+    let mut push = asking.push(l, asks);
+    push.v3(ORIGIN, point).v3(DIRECTION, normal).v3(THROUGHPUT, counts);
+    push.u(PRIM, vertices.u(l, PRIM, at)).u(SLOT, vertices.u(l, SLOT, at));
+}
+
+/// Asks the map for all of them.
+#[inline(always)]
+fn answer<L: Lanes>(l: L, context: &Context<'_>, asking: &Stream, slots: &mut Slots) {
+    for at in (0..asking.len()).step_by(L::WIDTH) {
+        let (slot, asks, point) = (asking.u(l, SLOT, at), asking.active(l, at), asking.v3(l, ORIGIN, at));
+        let query = Query {
+            point,
+            normal: asking.v3(l, DIRECTION, at),
+            prim: asking.u(l, PRIM, at),
+            asks,
+            // The upper bits are the number of the sample in its round, in some order.
+            sub_map: l.shr::<28>(slot),
+            radius: context.pilot.radius(l, point) * l.f(context.shrink),
+        };
+        let (found, counts) = (context.gather.irradiance(l, &query), asking.v3(l, THROUGHPUT, at));
+        slots.add(l, asks, slot, counts * found.irradiance);
+        slots.add_shift(l, asks, slot, counts * (found.irradiance - found.inner));
+    }
+}
