@@ -1,6 +1,7 @@
 //! Statistics of images and of measurements: metrics against a reference, the error that a render states of itself, and
 //! what a series of timings says. Pure functions; no files, no clock.
 
+mod bias;
 mod compare;
 mod interval;
 mod neighbours;
@@ -8,6 +9,7 @@ mod relative;
 mod statement;
 mod timing;
 
+pub use bias::{BiasStatement, bias_statement};
 pub use compare::{CompareError, Comparison, PixelDifference, compare};
 pub use statement::{ErrorStatement, error_statement};
 pub use timing::{efficiency, median, parallel_efficiency, quantile, speed_up};

@@ -1,7 +1,7 @@
 //! The summary of a render for people: a few lines that say what was made, how long it took and how good it is.
 
 use console::style;
-use smalti_measure::ErrorStatement;
+use smalti_measure::{BiasStatement, ErrorStatement};
 
 use crate::error_statement::SAMPLES_NEEDED;
 use crate::memory::in_words;
@@ -13,6 +13,7 @@ pub fn describe(summary: &Summary) -> String {
     let rows = [
         ("image", image(summary)),
         ("error", error(summary)),
+        ("radius", summary.bias.as_ref().map(radius).unwrap_or_default()),
         ("time", time(summary)),
         ("rays", rays(summary)),
         ("photons", photons(summary)),
@@ -59,6 +60,13 @@ fn stated(error: &ErrorStatement) -> String {
         pixels => format!("; {pixels} pixels are too uncertain to judge"),
     };
     format!("{} ({range}), relmse {:.3e}{uncertified}", percent(error.relative_error), error.relmse)
+}
+
+/// What photon radii add.
+fn radius(bias: &BiasStatement) -> String {
+    let BiasStatement { relative_bias, relative_bias_high, brightness } = bias;
+    let (likely, most) = (percent(*relative_bias), percent(*relative_bias_high));
+    format!("bias by photon radii {likely} (at most {most}); brightness {:+.3} %", 100.0 * brightness)
 }
 
 fn percent(share: f64) -> String {

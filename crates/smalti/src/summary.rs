@@ -7,7 +7,7 @@ use smalti_core::film::{Film, Image, ROUND};
 use smalti_core::plan::LEAST_CONTRIBUTION;
 use smalti_core::render::{RayCounts, Rejected};
 use smalti_core::settings::{Fresnel, Integrator, Rect, Settings};
-use smalti_measure::ErrorStatement;
+use smalti_measure::{BiasStatement, ErrorStatement};
 use smalti_scheduler::{Outcome, Timing};
 
 use crate::error_statement;
@@ -61,6 +61,8 @@ pub struct Summary {
     pub mean: [f64; 3],
     /// Noise; null with too few samples. Upper ends that cannot be known are null.
     pub error: Option<ErrorStatement>,
+    /// What photon radii add to the image in error; null without photons, or before two rounds. Not in `error`.
+    pub bias: Option<BiasStatement>,
     /// What is wrong with the image apart from noise, in words.
     pub biases: Vec<String>,
     pub tiles: Option<TilesRecord>,
@@ -115,13 +117,16 @@ pub struct Developed {
     pub image: Image,
     /// Its error; `None` with too few samples.
     pub error: Option<ErrorStatement>,
+    /// Its bias by photon radii; `None` where there is none, and with too few samples.
+    pub bias: Option<BiasStatement>,
     /// Fewest and most samples of any pixel.
     pub samples: (u32, u32),
 }
 
 /// Develops a film.
 pub fn develop(film: &Film) -> Developed {
-    Developed { image: film.develop(), error: error_statement::of(film), samples: film.samples() }
+    let bias = film.shifts().and_then(|shifts| smalti_measure::bias_statement(&shifts, film.area.width));
+    Developed { image: film.develop(), error: error_statement::of(film), bias, samples: film.samples() }
 }
 
 /// How the machine was used.
@@ -170,6 +175,7 @@ pub fn summary(job: &Job, work: Work, outcome: &Outcome, developed: &Developed) 
         capped_paths: outcome.capped,
         mean: developed.image.mean(),
         error: developed.error,
+        bias: developed.bias,
         biases: biases(&job.settings, outcome.capped),
         tiles: tiles(&outcome.timing),
         idle: idle.iter().sum::<f64>() / idle.len().max(1) as f64,

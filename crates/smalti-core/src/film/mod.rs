@@ -108,6 +108,15 @@ pub struct Tile {
 /// rounds. Rounds have photons of their own, so the product of the two halves has no bias by their noise.
 pub type Shift = [[f32; 3]; 2];
 
+/// A pixel, and what photon radii shift it by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shifted {
+    /// Mean of all samples.
+    pub mean: [f64; 3],
+    /// Means of the shift (half of the bias by the radius) over the samples of even and of odd rounds.
+    pub halves: [[f64; 3]; 2],
+}
+
 /// The film of a render.
 #[derive(Clone, Debug)]
 pub struct Film {
@@ -174,6 +183,26 @@ impl Film {
         Some(estimates)
     }
 
+    /// What photon radii shift each pixel by, in image order; `None` where no photons are asked, and before every tile
+    /// has samples of two rounds.
+    pub fn shifts(&self) -> Option<Vec<Shifted>> {
+        if self.samples().0 <= ROUND || self.tiles.iter().any(|tile| tile.shifts.is_empty()) {
+            return None;
+        }
+        let mut shifts = vec![Shifted { mean: [0.0; 3], halves: [[0.0; 3]; 2] }; self.area.pixels()];
+        for tile in &self.tiles {
+            let counts = halves(tile.samples).map(f64::from);
+            let mut halves = tile.shifts.iter();
+            self.for_each(tile, |index, pixel| {
+                let [even, odd] = halves.next().copied().unwrap_or_default();
+                let mean = |sum: [f32; 3], count: f64| sum.map(|value| f64::from(value) / count);
+                let halves = [mean(even, counts[0]), mean(odd, counts[1])];
+                shifts[index] = Shifted { mean: pixel.mean(tile.samples), halves };
+            });
+        }
+        Some(shifts)
+    }
+
     /// Calls `visit` with the image index and the sums of every pixel of `tile`.
     fn for_each(&self, tile: &Tile, mut visit: impl FnMut(usize, &Pixel)) {
         for (row, pixels) in tile.pixels.chunks_exact(tile.area.width as usize).enumerate() {
@@ -184,6 +213,12 @@ impl Film {
             }
         }
     }
+}
+
+/// How many of the first `samples` samples are of even and of odd rounds.
+fn halves(samples: u32) -> [u32; 2] {
+    let (pairs, rest) = (samples / (2 * ROUND), samples % (2 * ROUND));
+    [pairs * ROUND + rest.min(ROUND), pairs * ROUND + rest.saturating_sub(ROUND)]
 }
 
 #[cfg(test)]
@@ -227,6 +262,14 @@ mod tests {
         pixel.sum[0] = 16_777_216.0;
         pixel.add(3, [1.0, 0.0, 0.0]);
         assert_eq!(pixel.sum[0], 16_777_217.0);
+    }
+
+    #[test]
+    fn samples_are_of_even_or_odd_rounds() {
+        for samples in [0, 1, ROUND, ROUND + 3, 2 * ROUND, 5 * ROUND + 7] {
+            let even = (0..samples).filter(|sample| (sample / ROUND).is_multiple_of(2)).count() as u32;
+            assert_eq!(halves(samples), [even, samples - even]);
+        }
     }
 
     #[test]

@@ -112,6 +112,15 @@ impl Tree {
         (places.len(), flux, ((x * y) * (x * y) + (y * z) * (y * z) + (z * x) * (z * x)).sqrt())
     }
 
+    /// The mean of the photons' places in a leaf.
+    pub fn middle_of(&self, leaf: usize) -> [f32; 3] {
+        let photons: Vec<[f32; 4]> = (leaf * BLOCK..(leaf + 1) * BLOCK)
+            .filter_map(|number| self.photon(number))
+            .map(|(place, _)| place)
+            .collect();
+        [0, 1, 2].map(|k: usize| photons.iter().map(|place| place[k]).sum::<f32>() / photons.len() as f32)
+    }
+
     /// Bytes that it takes.
     pub fn bytes(&self) -> u64 {
         (size_of_val(&self.splits[..]) + size_of_val(&self.blocks[..]) + size_of_val(&self.flux[..])) as u64

@@ -6,6 +6,8 @@
 
 use core::f32::consts::PI;
 
+use rayon::prelude::*;
+
 use super::grid::Grid;
 use super::kd_tree::{BLOCK, Tree};
 use crate::lanes::{Lanes, V3};
@@ -15,6 +17,10 @@ pub const PHOTONS: u32 = 1 << 15;
 
 /// Photons of a sub-map that a point is to find in the first round.
 const WANTED: f32 = 4.0;
+
+/// How fast the radius may grow with distance. A point in the dark with a large radius sees the photons of a bright spot
+/// nearby that others, with small ones, count too: where the radius jumps, light comes from nowhere.
+const SLOPE: f32 = 0.25;
 
 /// The largest radius, in the frame (in which scenes are about 2 wide).
 const LARGEST: f32 = 0.05;
@@ -33,11 +39,18 @@ pub struct Pilot {
     expected: Grid,
 }
 
-/// A leaf, and what is to be expected there.
+/// A leaf of the tree.
+#[derive(Clone, Copy)]
 struct Region {
+    /// The middle of its photons.
+    middle: [f32; 3],
     radius: f32,
-    /// Mean square of the irradiance that a query finds, times the area by photon.
-    square: f32,
+    /// Photons of a sub-map by area.
+    density: f32,
+    /// Flux of one of them.
+    flux: f32,
+    /// Area by photon.
+    area: f32,
 }
 
 impl Pilot {
@@ -45,10 +58,14 @@ impl Pilot {
     /// same everywhere if it is given.
     pub fn new(tree: Tree, (emitted, of_sub_map): (u32, u32), radius: Option<f32>) -> Self {
         let share = of_sub_map as f32 / emitted as f32;
-        let leaves: Vec<Region> = (0..tree.blocks.len()).map(|leaf| Region::new(&tree, leaf, share, radius)).collect();
+        let mut leaves: Vec<Region> = (0..tree.blocks.len()).map(|leaf| Region::new(&tree, leaf, share)).collect();
+        match radius {
+            Some(radius) => leaves.iter_mut().for_each(|leaf| leaf.radius = radius.max(SMALLEST)),
+            None => soften(&mut leaves),
+        }
         let square = |number: usize| {
             let ([x, y, z, _], _) = tree.photon(number)?;
-            Some(([x, y, z], leaves[number / BLOCK].square))
+            Some(([x, y, z], leaves[number / BLOCK].square()))
         };
         let squares: Vec<_> = (0..tree.flux.len()).filter_map(square).collect();
         let expected = Grid::densities(&squares).map(f32::sqrt);
@@ -88,15 +105,33 @@ impl Pilot {
 }
 
 impl Region {
-    fn new(tree: &Tree, leaf: usize, share: f32, radius: Option<f32>) -> Self {
+    /// Leaf `leaf`, of which a sub-map has so many photons for each.
+    fn new(tree: &Tree, leaf: usize, share: f32) -> Self {
         let (photons, flux, area) = tree.spread_of(leaf);
-        // Photons of a sub-map by area.
-        let density = share * photons as f32 / area;
-        let wanted = (WANTED / (PI * density)).sqrt();
-        let radius = radius.unwrap_or(wanted.min(LARGEST)).max(SMALLEST);
-        // A query finds n photons on its disc; the mean square of n is that of its mean, and the mean.
-        let disc = PI * radius * radius;
-        let (found, one) = (density * disc, flux / (photons as f32 * share * disc));
-        Self { radius, square: one * one * found * (found + 1.0) * area / photons as f32 }
+        let (photons, middle) = (photons as f32, tree.middle_of(leaf));
+        let density = share * photons / area;
+        let radius = (WANTED / (PI * density)).sqrt().clamp(SMALLEST, LARGEST);
+        Self { middle, radius, density, flux: flux / (share * photons), area: area / photons }
     }
+
+    /// Mean square of the irradiance that a query finds, times the area by photon. A query finds n photons; the mean
+    /// square of n is the square of its mean, and its mean.
+    fn square(&self) -> f32 {
+        let disc = PI * self.radius * self.radius;
+        let (found, one) = (self.density * disc, self.flux / disc);
+        one * one * found * (found + 1.0) * self.area
+    }
+}
+
+/// Makes radii smaller until they grow nowhere faster than [`SLOPE`].
+fn soften(leaves: &mut [Region]) {
+    let before: Vec<([f32; 3], f32)> = leaves.iter().map(|leaf| (leaf.middle, leaf.radius)).collect();
+    leaves.par_iter_mut().for_each(|leaf| {
+        let from = |[x, y, z]: [f32; 3]| {
+            let [p, q, r] = leaf.middle;
+            ((x - p) * (x - p) + (y - q) * (y - q) + (z - r) * (z - r)).sqrt()
+        };
+        let bound = |(middle, radius): &([f32; 3], f32)| radius + SLOPE * from(*middle);
+        leaf.radius = before.iter().map(bound).fold(f32::INFINITY, f32::min);
+    });
 }
