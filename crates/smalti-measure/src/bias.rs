@@ -86,9 +86,12 @@ fn standard_error(blocks: &[Block], mean: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// A number in [-1, 1) that looks random.
-    fn noise(index: usize, salt: usize) -> f64 {
-        ((index * 7919 + salt * 104_729 + index * index % 10_007 * 31) % 20_011) as f64 / 10_005.5 - 1.0
+    /// A number in [-1, 1) that looks random (the mixer of SplitMix64).
+    fn noise(index: usize, salt: u64) -> f64 {
+        let mut x = (index as u64 ^ salt << 32).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((x ^ x >> 31) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 
     fn image(bias: impl Fn(usize) -> f64, amplitude: f64) -> Vec<Shifted> {
