@@ -189,7 +189,8 @@ impl Renderer {
             }
             let next = self.bounce(bounce, maps, workspace, |_, _| {});
             if asks {
-                work.rays.shadow += workspace.diffuse.len() as u64 * u64::from(self.settings.shadow_rays);
+                let asked = workspace.diffuse.len() as u64 * u64::from(self.settings.shadow_rays);
+                work.rays.shadow += asked - core::mem::take(&mut workspace.shadows.saved);
             }
             work.rays.scattered += workspace.rays.len() as u64;
             if next == ControlFlow::Break(()) {
@@ -257,7 +258,9 @@ impl Renderer {
             Stage::Surface => dispatch!(token, l => surface::run(l, scene, diffuse)),
             Stage::Direct { weighed } => {
                 let Plan { occluders, parts, .. } = &self.plan;
-                let context = direct::Context { lights: &scene.lights, occluders, parts, settings, weighed };
+                let surfaces = self.plan.photons.as_ref().map(|photons| &photons.surfaces);
+                let decided = maps.visibility.as_deref().zip(surfaces);
+                let context = direct::Context { lights: &scene.lights, occluders, parts, settings, weighed, decided };
                 dispatch!(token, l => direct::run(l, &context, bounce, diffuse, shadows, slots));
             }
             Stage::Caustic => {

@@ -20,19 +20,30 @@ pub struct Emission<'a> {
     pub emitted: u32,
 }
 
+/// What is kept of each photon of a batch, by its slot.
+#[derive(Clone, Debug, Default)]
+pub struct Slots {
+    /// Flux that it set out with, in its brightest channel.
+    pub power: Vec<f32>,
+    /// Row of the light that it left.
+    pub rows: Vec<u32>,
+}
+
 /// Emits photons `first..first + count` of the set `key` into `photons`. A photon's throughput has 1 as its largest
-/// channel; `power[slot]` is the flux in that channel. Photons of no flux are left out.
+/// channel; the flux in that channel is in its slot. Photons of no flux are left out.
 #[inline(always)]
 pub fn run<L: Lanes>(
     l: L,
     emission: &Emission<'_>,
     (key, first, count): (u32, u32, u32),
     photons: &mut Stream,
-    power: &mut Vec<f32>,
+    Slots { power, rows }: &mut Slots,
 ) {
     let Emission { lights, aim, sampler, emitted } = *emission;
     power.clear();
     power.resize(count as usize + 16, 0.0);
+    rows.clear();
+    rows.resize(count as usize + 16, 0);
     photons.clear();
     photons.reserve(count as usize);
     for at in (0..count).step_by(L::WIDTH) {
@@ -51,6 +62,7 @@ pub fn run<L: Lanes>(
         let measure = l.gather(&aim.measures, row) * l.f(1.0 / emitted as f32);
         let flux = brightest * measure * cosine / density;
         l.store(flux, &mut power[at as usize..]);
+        l.store_u(row, &mut rows[at as usize..]);
         let leaves = l.first((count - at) as usize) & l.lt(l.f(0.0), flux) & l.lt(flux, l.f(f32::INFINITY));
         let mut push = photons.push(l, leaves);
         push.v3(ORIGIN, source.origin).v3(DIRECTION, direction).u(LEAVES, source.surface);

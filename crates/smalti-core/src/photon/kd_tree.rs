@@ -99,6 +99,22 @@ impl Tree {
         (l.select_u(l.lt(along, l.f(0.0)), l.add_u(first, l.u(1)), first), along)
     }
 
+    /// The leaf of each point.
+    #[inline(always)]
+    pub fn leaf<L: Lanes>(&self, l: L, point: V3<L>) -> L::U {
+        let leaves = l.u(self.blocks.len() as u32);
+        let mut node = l.u(1);
+        loop {
+            let down = l.lt_u(node, leaves);
+            if !l.any(down) {
+                break;
+            }
+            let child = self.child(l, l.select_u(down, node, l.u(1)), point).0;
+            node = l.select_u(down, child, node);
+        }
+        l.add_u(node, l.add_u(!leaves, l.u(1)))
+    }
+
     /// Photons of a leaf, their flux (brightest channel), and about how much area they lie on.
     pub fn spread_of(&self, leaf: usize) -> (usize, f32, f32) {
         let photons = (leaf * BLOCK..(leaf + 1) * BLOCK).filter_map(|number| self.photon(number));

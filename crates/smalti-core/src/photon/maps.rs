@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::kd_tree::Tree;
 use super::pass::{Pass, PhotonWorkspace, Traced};
-use super::{Account, Batch, Map, Photons, Pilot, SUB_MAPS, pilot};
+use super::{Account, Batch, Map, Photons, Pilot, SUB_MAPS, Visibility, pilot};
 use crate::render::Renderer;
 
 /// How fast the radius shrinks: of the rounds' mean, variance falls as n^−α and squared bias as n^(2α−2).
@@ -30,6 +30,8 @@ pub struct Maps {
     pub caustic: Option<Layer>,
     /// All light.
     pub global: Option<Layer>,
+    /// Where lights are seen and hidden; the same for all rounds.
+    pub visibility: Option<Arc<Visibility>>,
 }
 
 /// A map, and what photons sent ahead say of it.
@@ -51,13 +53,14 @@ impl Maps {
 
     /// Bytes that they take.
     pub fn bytes(&self) -> u64 {
-        self.layers().map(|layer| layer.map.bytes() + layer.pilot.bytes()).sum()
+        let layers: u64 = self.layers().map(|layer| layer.map.bytes() + layer.pilot.bytes()).sum();
+        layers + self.visibility.as_ref().map_or(0, |visibility| visibility.bytes())
     }
 
     /// What was sent ahead, for the maps of another round.
     pub fn pilots(&self) -> Pilots {
         let of = |layer: &Option<Layer>| layer.as_ref().map(|layer| layer.pilot.clone());
-        Pilots { caustic: of(&self.caustic), global: of(&self.global) }
+        Pilots { caustic: of(&self.caustic), global: of(&self.global), visibility: self.visibility.clone() }
     }
 
     fn layers(&self) -> impl Iterator<Item = &Layer> {
@@ -70,6 +73,7 @@ impl Maps {
 pub struct Pilots {
     caustic: Option<Arc<Pilot>>,
     global: Option<Arc<Pilot>>,
+    visibility: Option<Arc<Visibility>>,
 }
 
 impl Renderer {
@@ -84,20 +88,30 @@ impl Renderer {
             Some(Layer { pilot, map: self.map(pass, round, progress) })
         };
         let (caustic, global) = (layer(&photons.caustic, pilots.caustic), layer(&photons.global, pilots.global));
-        Maps { round, shrink: shrink(round), caustic, global }
+        let visibility = photons.shadow.as_ref().map(|pass| match pilots.visibility {
+            Some(known) => known,
+            None => Arc::new(self.visibility(pass, progress)),
+        });
+        Maps { round, shrink: shrink(round), caustic, global, visibility }
     }
 
     /// Photons that the maps of a round take, with those that are sent ahead or without.
     pub fn photons_of_round(&self, ahead: bool) -> u64 {
         let Some(photons) = &self.plan().photons else { return 0 };
         let of = |pass: &Pass| u64::from(pass.of_sub_map() * SUB_MAPS) + if ahead { pilot::PHOTONS.into() } else { 0 };
-        photons.caustic.iter().chain(&photons.global).map(of).sum()
+        let shadow = photons.shadow.as_ref().filter(|_| ahead).map_or(0, |pass| pass.photons.into());
+        photons.caustic.iter().chain(&photons.global).map(of).sum::<u64>() + shadow
     }
 
     fn pilot(&self, pass: &Pass, radius: Option<f32>, progress: &AtomicU64) -> Pilot {
         let ahead = Pass { photons: pilot::PHOTONS, ..pass.clone() };
         let (photons, _) = collected(self.traced(&ahead, ahead.batches(AHEAD), progress));
         Pilot::new(Tree::new(&photons), (pilot::PHOTONS, pass.of_sub_map()), radius)
+    }
+
+    fn visibility(&self, pass: &Pass, progress: &AtomicU64) -> Visibility {
+        let (photons, _) = collected(self.traced(pass, pass.batches(AHEAD), progress));
+        Visibility::new(Tree::new(&photons))
     }
 
     /// One sub-map after the other becomes a tree, so that little more is held than the trees.

@@ -19,8 +19,10 @@ pub mod maps;
 pub mod nearest;
 pub mod pass;
 pub mod pilot;
+pub mod shadow;
 pub mod store;
 pub mod surfaces;
+pub mod visibility;
 
 pub use account::Account;
 pub use aim::Aim;
@@ -29,6 +31,7 @@ pub use maps::Maps;
 pub use pass::{Batch, Traced};
 pub use pilot::Pilot;
 pub use surfaces::Surfaces;
+pub use visibility::Visibility;
 
 use crate::film::ROUND;
 
@@ -43,6 +46,8 @@ pub enum Kind {
     Caustic = 0,
     /// All light at every diffuse surface: L (S|D)* D.
     Global = 1,
+    /// Where lights are seen and where they are hidden.
+    Shadow = 2,
 }
 
 /// Photons as they were stored.

@@ -4,7 +4,8 @@
 //! and collected by their number.
 
 use super::emit::{self, Emission};
-use super::{Account, Aim, Kind, Photons, SUB_MAPS, store};
+use super::visibility::HIDDEN;
+use super::{Account, Aim, Kind, Photons, SUB_MAPS, shadow, store};
 use crate::lanes::dispatch;
 use crate::render::Renderer;
 use crate::sampling::sampler::photon_key;
@@ -18,6 +19,9 @@ const PHOTONS: u32 = 4096;
 
 /// Photons with one key: their numbers fit 16 bits.
 const SET: u32 = 1 << 16;
+
+/// Surfaces that a shadow photon goes through at most.
+const MOST_MET: u32 = 64;
 
 const _: () = assert!(PHOTONS as usize <= MOST_SLOTS && SET.is_multiple_of(PHOTONS));
 
@@ -87,7 +91,7 @@ pub struct PhotonWorkspace {
     mirror: Stream,
     dielectric: Stream,
     escaped: Stream,
-    power: Vec<f32>,
+    slots: emit::Slots,
 }
 
 impl PhotonWorkspace {
@@ -101,7 +105,7 @@ impl PhotonWorkspace {
             mirror: stream(),
             dielectric: stream(),
             escaped: stream(),
-            power: Vec::new(),
+            slots: emit::Slots::default(),
         }
     }
 }
@@ -112,7 +116,11 @@ impl Renderer {
         let mut traced = Traced::default();
         self.emit(pass, batch, workspace);
         traced.account.photons = batch.count.into();
-        traced.account.emitted = sum(&workspace.photons, &workspace.power);
+        traced.account.emitted = sum(&workspace.photons, &workspace.slots.power);
+        if batch.kind == Kind::Shadow {
+            self.follow_through(workspace, &mut traced);
+            return traced;
+        }
         for bounce in 0..self.plan().max_bounces {
             traced.account.rays += workspace.photons.len() as u64;
             self.photon_bounce(batch.kind, bounce, workspace, &mut traced);
@@ -123,19 +131,19 @@ impl Renderer {
             }
         }
         // What the limit on bounces cuts off ends where it is.
-        add(&mut traced.account.absorbed, sum(&workspace.photons, &workspace.power));
+        add(&mut traced.account.absorbed, sum(&workspace.photons, &workspace.slots.power));
         traced.account.kept = traced.photons.len() as u64;
         traced
     }
 
     fn emit(&self, pass: &Pass, batch: Batch, workspace: &mut PhotonWorkspace) {
-        let PhotonWorkspace { photons, power, next, .. } = workspace;
+        let PhotonWorkspace { photons, slots, next, .. } = workspace;
         let Batch { kind, round, sub_map, first, count, emitted } = batch;
         let settings = self.settings();
         let emission = Emission { lights: &self.scene().lights, aim: &pass.aim, sampler: settings.sampler, emitted };
         let key = photon_key(settings.seed, kind as u32, round, sub_map, first / SET);
         next.clear();
-        dispatch!(self.token(), l => emit::run(l, &emission, (key, first % SET, count), photons, power));
+        dispatch!(self.token(), l => emit::run(l, &emission, (key, first % SET, count), photons, slots));
     }
 
     /// Takes photons through one bounce.
@@ -143,18 +151,20 @@ impl Renderer {
         let (scene, token) = (self.scene(), self.token());
         dispatch!(token, l => intersect::run(l, &self.plan().everything, &mut workspace.photons));
         self.sort_photons(workspace);
-        let PhotonWorkspace { photons, next, diffuse, mirror, dielectric, escaped, power } = workspace;
+        let PhotonWorkspace { photons, next, diffuse, mirror, dielectric, escaped, slots } = workspace;
+        let power = &slots.power[..];
         let account = &mut traced.account;
         add(&mut account.escaped, sum(escaped, power));
         add(&mut account.absorbed, on_black(scene, photons, power));
         let landed = sum(diffuse, power);
         if kind == Kind::Global || bounce > 0 {
             account.nonfinite +=
-                dispatch!(token, l => store::run(l, scene, bounce, diffuse, power, &mut traced.photons));
+                dispatch!(token, l => store::run(l, scene, &|_| bounce, diffuse, power, &mut traced.photons));
         }
         match kind {
             Kind::Caustic if bounce == 0 => add(&mut account.absorbed, landed),
             Kind::Caustic => add(&mut account.stored, landed),
+            Kind::Shadow => unreachable!("shadow photons do not bounce"),
             Kind::Global => {
                 dispatch!(token, l => surface::run(l, scene, diffuse));
                 let settings = self.settings();
@@ -163,6 +173,28 @@ impl Renderer {
             }
         }
         self.scatter_specular(bounce, (mirror, dielectric, next, power), account);
+    }
+
+    /// Takes photons through everything that they meet; stores where they land first and, marked, where they land then.
+    fn follow_through(&self, workspace: &mut PhotonWorkspace, traced: &mut Traced) {
+        let (scene, token) = (self.scene(), self.token());
+        for met in 0..MOST_MET {
+            traced.account.rays += workspace.photons.len() as u64;
+            dispatch!(token, l => intersect::run(l, &self.plan().everything, &mut workspace.photons));
+            self.sort_photons(workspace);
+            let PhotonWorkspace { photons, next, diffuse, slots, .. } = workspace;
+            let mark = if met == 0 { 0 } else { HIDDEN };
+            let light = |slot: usize| slots.rows[slot] | mark;
+            traced.account.nonfinite +=
+                dispatch!(token, l => store::run(l, scene, &light, diffuse, &slots.power, &mut traced.photons));
+            dispatch!(token, l => shadow::run(l, scene, photons, next));
+            core::mem::swap(photons, next);
+            next.clear();
+            if photons.is_empty() {
+                break;
+            }
+        }
+        traced.account.kept = traced.photons.len() as u64;
     }
 
     /// Mirrors and dielectrics, as the plan has them.

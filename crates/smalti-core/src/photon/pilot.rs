@@ -90,17 +90,8 @@ impl Pilot {
     /// How far photons count at each point of a packet.
     #[inline(always)]
     pub fn radius<L: Lanes>(&self, l: L, point: V3<L>) -> L::F {
-        let leaves = l.u(self.radii.len() as u32);
-        let mut node = l.u(1);
-        loop {
-            let down = l.lt_u(node, leaves);
-            if !l.any(down) {
-                break;
-            }
-            let child = self.tree.child(l, l.select_u(down, node, l.u(1)), point).0;
-            node = l.select_u(down, child, node);
-        }
-        l.gather(&self.radii, l.add_u(node, l.add_u(!leaves, l.u(1))))
+        let leaf = if self.radii.len() > 1 { self.tree.leaf(l, point) } else { l.u(0) };
+        l.gather(&self.radii, leaf)
     }
 }
 

@@ -5,10 +5,17 @@ use crate::lanes::Lanes;
 use crate::scene::Scene;
 use crate::stream::{PRIM, SLOT, Stream, THROUGHPUT, surface};
 
-/// Stores the photons of a diffuse stream, `bounce` scattering events after they were emitted. Returns how many were not
-/// finite and are left out.
+/// Stores the photons of a diffuse stream, with what `events` says of their slots (the scattering events after they were
+/// emitted). Returns how many were not finite and are left out.
 #[inline(always)]
-pub fn run<L: Lanes>(l: L, scene: &Scene, bounce: u32, hits: &Stream, power: &[f32], photons: &mut Photons) -> u64 {
+pub fn run<L: Lanes>(
+    l: L,
+    scene: &Scene,
+    events: &impl Fn(usize) -> u32,
+    hits: &Stream,
+    power: &[f32],
+    photons: &mut Photons,
+) -> u64 {
     let mut nonfinite = 0;
     photons.places.reserve(hits.len());
     photons.flux.reserve(hits.len());
@@ -28,14 +35,18 @@ pub fn run<L: Lanes>(l: L, scene: &Scene, bounce: u32, hits: &Stream, power: &[f
             }
             let tag = Tag::new(hits.value(PRIM, at + lane), outside >> lane & 1 == 1);
             photons.places.push([x, y, z, f32::from_bits(tag.0)]);
-            photons.flux.push([flux[0], flux[1], flux[2], f32::from_bits(bounce)]);
+            photons.flux.push([flux[0], flux[1], flux[2], f32::from_bits(events(slot(hits, at + lane)))]);
         }
     }
     nonfinite
 }
 
+fn slot(photons: &Stream, at: usize) -> usize {
+    photons.value(SLOT, at) as usize & 0xffff
+}
+
 /// Flux that photon `at` of a stream carries.
 pub fn flux(photons: &Stream, at: usize, power: &[f32]) -> [f32; 3] {
-    let slot = photons.value(SLOT, at) as usize & 0xffff;
-    photons.triple(THROUGHPUT, at).map(|share| share * power[slot])
+    let power = power[slot(photons, at)];
+    photons.triple(THROUGHPUT, at).map(|share| share * power)
 }

@@ -106,7 +106,7 @@ impl Plan {
         let everything = Accel::new(scene, &prims);
         let in_the_way = if samples_lights(scene, settings) { occluders::of(scene) } else { Vec::new() };
         let (occluders, parts) = (Accel::new(scene, &in_the_way), Parts::new(scene, &in_the_way));
-        let photons = Photons::new(scene, settings);
+        let photons = Photons::new(scene, settings, !in_the_way.is_empty());
         let stages = stages(scene, settings, photons.as_ref());
         let columns = columns(scene, settings, photons.as_ref());
         let max_bounces = settings.max_bounces.unwrap_or(MOST_BOUNCES).min(MOST_BOUNCES);

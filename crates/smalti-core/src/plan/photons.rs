@@ -2,7 +2,7 @@
 
 use crate::accel::cones::Parts;
 use crate::photon::pass::Pass;
-use crate::photon::{Aim, Kind, Surfaces};
+use crate::photon::{Aim, Kind, Surfaces, visibility};
 use crate::scene::{Class, Scene};
 use crate::settings::{Integrator, Settings};
 
@@ -17,6 +17,8 @@ pub struct Photons {
     pub caustic: Option<Pass>,
     /// All light.
     pub global: Option<Pass>,
+    /// Where lights are seen and hidden.
+    pub shadow: Option<Pass>,
     /// What the photons lie on.
     pub surfaces: Surfaces,
     /// For each emitter 1 where its caustics are in the map.
@@ -29,7 +31,7 @@ pub struct Photons {
 
 impl Photons {
     /// The maps that this scene requires with these settings, if any.
-    pub fn new(scene: &Scene, settings: &Settings) -> Option<Self> {
+    pub fn new(scene: &Scene, settings: &Settings, occluded: bool) -> Option<Self> {
         let asked = settings.integrator.asks_photons() && settings.photons_of_round() > 0;
         if !asked || !scene.has(Class::Lambert) {
             return None;
@@ -45,6 +47,12 @@ impl Photons {
         });
         (caustic.is_some() || global.is_some()).then(|| Self {
             caustic,
+            // Shadow photons tell where shadow rays need not be asked: only where something may stop them.
+            shadow: (all && occluded).then(|| Pass {
+                kind: Kind::Shadow,
+                aim: Aim::everywhere(&scene.lights),
+                photons: visibility::PHOTONS,
+            }),
             global,
             surfaces: Surfaces::new(scene),
             in_map,

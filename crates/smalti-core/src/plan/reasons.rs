@@ -82,6 +82,12 @@ fn photon_maps(plan: &Plan, scene: &Scene, settings: &Settings) -> Vec<Decision>
     let caustic = photons.caustic.as_ref().map(|pass| caustic_map(pass, photons, scene));
     let all = |pass| map(pass, "map of all light", "asked behind the first diffuse bounce".into());
     let global = photons.global.as_ref().map(all);
+    let shadow = photons.shadow.as_ref().map(|pass| {
+        let choice = format!("shadow photons: {}", pass.photons);
+        let bytes = u64::from(pass.photons) * photon::Photons::BYTES;
+        let reason = format!("where they decide, one shadow ray in {} is asked", photon::visibility::ONE_IN);
+        decision("photons", choice, reason, bytes)
+    });
     let radius = match settings.radius {
         Some(radius) => format!("radius {radius} m"),
         None => "radius by the density of photons sent ahead".into(),
@@ -92,7 +98,7 @@ fn photon_maps(plan: &Plan, scene: &Scene, settings: &Settings) -> Vec<Decision>
         decision("photons", radius, shrinks, 0),
         decision("photons", "surfaces and their borders", surfaces, photons.surfaces.bytes()),
     ];
-    caustic.into_iter().chain(global).chain(how).collect()
+    caustic.into_iter().chain(global).chain(shadow).chain(how).collect()
 }
 
 fn caustic_map(pass: &Pass, photons: &super::Photons, scene: &Scene) -> Decision {

@@ -24,6 +24,9 @@ pub enum Purpose {
     Emission = 6,
     /// Whether a photon map is asked (first number).
     Gather = 7,
+    /// Whether a shadow ray is asked where photons decide (first number). The next bounce's `Film`, which only the
+    /// first has.
+    Verify = 8,
 }
 
 /// A path's identity as the sampler knows it.

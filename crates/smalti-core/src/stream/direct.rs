@@ -16,6 +16,8 @@ use crate::accel::{Accel, Tracer};
 use crate::geometry::Ray;
 use crate::lanes::{Lanes, Rgb, V3};
 use crate::light::{sample::sample, table::LightTable};
+use crate::photon::visibility::ONE_IN;
+use crate::photon::{Surfaces, Visibility};
 use crate::sampling::{Fan, Keys, Purpose, one_of};
 use crate::settings::Settings;
 
@@ -31,6 +33,8 @@ pub struct Context<'a> {
     pub settings: &'a Settings,
     /// Whether a scattered ray may find the same light (path), or not (whitted).
     pub weighed: bool,
+    /// What shadow photons say of the lights, and the surfaces that they lie on.
+    pub decided: Option<(&'a Visibility, &'a Surfaces)>,
 }
 
 /// Shadow rays of a block of vertices (more where one packet asks for more): enough that the doubtful ones fill packets.
@@ -41,6 +45,8 @@ const RAYS_AT_ONCE: usize = 1024;
 pub struct Shadows {
     /// Irradiance at the vertices, one column a colour.
     sums: [Vec<f32>; 3],
+    /// Shadow rays that shadow photons saved, since this was last set to 0.
+    pub saved: u64,
     /// Rays that something may stop: [`ORIGIN`], [`DIRECTION`] to the light at 1, the irradiance in [`THROUGHPUT`],
     /// [`LEAVES`], the light's surface in [`PRIM`], and in [`SLOT`] the vertex.
     rays: Stream,
@@ -56,7 +62,7 @@ pub fn run<L: Lanes>(
     context: &Context<'_>,
     bounce: u32,
     vertices: &Stream,
-    Shadows { sums, rays }: &mut Shadows,
+    Shadows { sums, rays, saved }: &mut Shadows,
     slots: &mut Slots,
 ) {
     let mut tracer = Tracer::new(l, context.occluders);
@@ -69,7 +75,7 @@ pub fn run<L: Lanes>(
         let packets = || (first..vertices.len().min(first + block)).step_by(L::WIDTH);
         rays.clear();
         for at in packets() {
-            let free = unstopped(l, context, bounce, (vertices, at), &mut cones, (rays, at - first));
+            let free = unstopped(l, context, bounce, (vertices, at), &mut cones, (rays, at - first, saved));
             store(l, free, sums, at - first);
         }
         trace(l, &mut tracer, rays, sums);
@@ -94,16 +100,23 @@ fn unstopped<L: Lanes>(
     bounce: u32,
     (vertices, at): (&Stream, usize),
     cones: &mut Cones<'_>,
-    (doubtful, vertex): (&mut Stream, usize),
+    (doubtful, vertex, saved): (&mut Stream, usize, &mut u64),
 ) -> Rgb<L> {
     let receiver = Receiver::new(l, context, bounce, vertices, at);
     cones.look_from(l, receiver.point);
     let nothing = V3::splat(l, [0.0; 3]);
     let mut sum = nothing;
     for number in 0..context.settings.shadow_rays {
-        let Arriving { reach, irradiance, surface, counts } = receiver.sample(l, context, number);
-        let doubt = counts & cones.may_stop(l, reach);
+        let Arriving { reach, mut irradiance, surface, counts, row } = receiver.sample(l, context, number);
+        let mut doubt = counts & cones.may_stop(l, reach);
         sum = sum + V3::select(l, counts & !doubt, irradiance, nothing);
+        if context.decided.is_some() && l.any(doubt) {
+            let known = receiver.known(l, context, (number, row), doubt);
+            sum = sum + V3::select(l, known.seen, irradiance.scale(known.by_photons), nothing);
+            irradiance = irradiance.scale(known.by_ray);
+            *saved += u64::from(l.bitmask(doubt & !known.asks).count_ones());
+            doubt = known.asks;
+        }
         if l.any(doubt) {
             let mut push = doubtful.push(l, doubt);
             push.v3(ORIGIN, receiver.point).v3(DIRECTION, reach).v3(THROUGHPUT, irradiance);
@@ -141,6 +154,7 @@ struct Receiver<L: Lanes> {
     bounce: u32,
     /// Numbers for the place on a light.
     place: Fan<L>,
+    prim: L::U,
 }
 
 /// One light sample of each vertex.
@@ -153,6 +167,20 @@ struct Arriving<L: Lanes> {
     surface: L::U,
     /// Lanes where something arrives if nothing is in the way.
     counts: L::M,
+    /// Row of the light.
+    row: L::U,
+}
+
+/// What shadow photons say of one light sample of each vertex.
+struct Known<L: Lanes> {
+    /// Lanes in which the light is seen.
+    seen: L::M,
+    /// What they count for there.
+    by_photons: L::F,
+    /// Lanes in which a shadow ray is asked.
+    asks: L::M,
+    /// What it counts for.
+    by_ray: L::F,
 }
 
 impl<L: Lanes> Receiver<L> {
@@ -167,7 +195,30 @@ impl<L: Lanes> Receiver<L> {
             active: vertices.active(l, at),
             keys,
             bounce,
+            prim: vertices.u(l, PRIM, at),
             place: Fan::new(l, sampler, keys, bounce, Purpose::LightPoint, shadow_rays),
+        }
+    }
+
+    /// What shadow photons say of light sample `number`, of light `row`, in the lanes `doubt`. Where they decide, one
+    /// ray in [`ONE_IN`] is asked and counts as many times, less what the photons said.
+    #[inline(always)]
+    fn known(&self, l: L, context: &Context<'_>, (number, row): (u32, L::U), doubt: L::M) -> Known<L> {
+        let one = l.f(1.0);
+        let Some((visibility, surfaces)) = context.decided else {
+            return Known { seen: l.m(false), by_photons: one, asks: doubt, by_ray: one };
+        };
+        let Settings { sampler, shadow_rays, .. } = *context.settings;
+        let prim = l.select_u(self.active, self.prim, l.u(0));
+        let (seen, hidden) = visibility.at(l, surfaces, prim, (self.point, self.normal)).of(l, row);
+        let known = doubt & (seen | hidden);
+        let u = one_of(l, sampler, self.keys, self.bounce, Purpose::Verify, (number, shadow_rays));
+        let verified = known & l.lt(u, l.f(1.0 / ONE_IN as f32));
+        Known {
+            seen: known & seen,
+            by_photons: l.select(verified, l.f(1.0 - ONE_IN as f32), one),
+            asks: (doubt & !known) | verified,
+            by_ray: l.select(verified, l.f(ONE_IN as f32), one),
         }
     }
 
@@ -192,7 +243,7 @@ impl<L: Lanes> Receiver<L> {
         let brightest = irradiance.max_component(l);
         let arrives = l.lt(l.f(0.0), brightest) & l.lt(brightest, l.f(f32::INFINITY));
         let counts = self.active & l.lt(l.f(0.0), cosine) & arrives;
-        Arriving { reach: incident.reach, irradiance, surface: incident.surface, counts }
+        Arriving { reach: incident.reach, irradiance, surface: incident.surface, counts, row }
     }
 }
 

@@ -33,7 +33,18 @@ impl<L: Lanes> Hit<L> {
 /// The hits of a packet.
 #[inline(always)]
 pub fn hit<L: Lanes>(l: L, scene: &Scene, hits: &Stream, at: usize) -> Hit<L> {
-    let [x, y, z, w, r, g, b, surface] = l.gather_record(&scene.shades, hits.u(l, PRIM, at));
+    of(l, scene, hits, at, hits.u(l, PRIM, at))
+}
+
+/// The hits of the lanes `mask` of a packet; the others may have missed.
+#[inline(always)]
+pub fn hit_where<L: Lanes>(l: L, scene: &Scene, hits: &Stream, at: usize, mask: L::M) -> Hit<L> {
+    of(l, scene, hits, at, l.select_u(mask, hits.u(l, PRIM, at), l.u(0)))
+}
+
+#[inline(always)]
+fn of<L: Lanes>(l: L, scene: &Scene, hits: &Stream, at: usize, prim: L::U) -> Hit<L> {
+    let [x, y, z, w, r, g, b, surface] = l.gather_record(&scene.shades, prim);
     let surface = l.bits(surface);
     let (origin, direction) = (hits.v3(l, ORIGIN, at), hits.v3(l, DIRECTION, at));
     let point = origin.along(l, hits.f(l, DISTANCE, at), direction);
