@@ -45,6 +45,15 @@ pub enum DestinationError {
 /// An unknown extension, a missing or read-only folder, or something at `path` that is no file.
 pub fn check_destination(path: &Path) -> Result<Format, DestinationError> {
     let format = Format::from_path(path)?;
+    check_place(path)?;
+    Ok(format)
+}
+
+/// Whether a file can be written to `path`. Makes and removes an empty file beside it.
+///
+/// # Errors
+/// A missing or read-only folder, or something at `path` that is no file.
+pub fn check_place(path: &Path) -> Result<(), DestinationError> {
     let target = resolve(path);
     let folder = folder_of(&target);
     if !folder.is_dir() {
@@ -55,14 +64,14 @@ pub fn check_destination(path: &Path) -> Result<Format, DestinationError> {
     }
     let trial = temporary_of(&target);
     match create(&trial).and_then(|_| fs::remove_file(&trial)) {
-        Ok(()) => Ok(format),
+        Ok(()) => Ok(()),
         Err(error) => Err(DestinationError::NotWritable { path: path.into(), folder: folder.into(), error }),
     }
 }
 
 /// Puts what `fill` writes in the place of `path`. Whatever goes wrong, and whenever the process is killed, `path` is
 /// what it was or the whole new file, and no other file is left unless it is killed.
-pub(crate) fn replace(path: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<()> {
+pub fn replace(path: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<()> {
     let target = resolve(path);
     let temporary = temporary_of(&target);
     let result = write_through(&temporary, fill).and_then(|()| fs::rename(&temporary, &target));

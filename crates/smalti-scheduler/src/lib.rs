@@ -13,6 +13,7 @@ mod pass;
 mod pool;
 mod progress;
 mod render;
+mod shelf;
 mod unit;
 
 pub use cancel::Cancel;
@@ -20,4 +21,5 @@ pub use event::{ErrorOf, Event, Watch};
 pub use outcome::{Balance, Outcome, Panicked, Photons, Rejections, Timing};
 pub use pool::{PoolError, pool};
 pub use progress::{Current, Progress};
-pub use render::render;
+pub use render::{render, render_with};
+pub use shelf::Shelf;

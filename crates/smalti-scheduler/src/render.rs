@@ -12,7 +12,7 @@ use smalti_core::render::{Renderer, Work};
 
 use crate::account::{Record, least, outcome};
 use crate::unit::{Audience, Unit, Worker};
-use crate::{Cancel, Event, Outcome, Panicked, Photons, Progress, Timing, Watch, pass};
+use crate::{Cancel, Event, Outcome, Panicked, Photons, Progress, Shelf, Timing, Watch, pass};
 
 /// Adds samples to `film` until every pixel has as many as the renderer's settings ask for, on all workers of `pool`.
 /// A film that has samples already is continued.
@@ -26,14 +26,34 @@ pub fn render(
     cancel: &Cancel,
     watch: Option<Watch>,
 ) -> Result<Outcome, Panicked> {
+    render_with(renderer, film, pool, cancel, watch, None)
+}
+
+/// [`render`] with photon maps from a shelf, as far as they are there; the others are put there. The image is the same.
+///
+/// # Errors
+/// A worker panicked.
+pub fn render_with(
+    renderer: &Renderer,
+    film: Film,
+    pool: &ThreadPool,
+    cancel: &Cancel,
+    watch: Option<Watch>,
+    shelf: Option<&dyn Shelf>,
+) -> Result<Outcome, Panicked> {
     let maps: RwLock<Option<Maps>> = RwLock::new(None);
     let none = Maps::default();
     let emit = |round, told: &dyn Fn(u64), done: &AtomicU64| {
         let pilots = maps.read().unwrap_or_else(PoisonError::into_inner).as_ref().map(Maps::pilots);
         // The last round's photons make room before the next ones are there.
         *maps.write().unwrap_or_else(PoisonError::into_inner) = None;
-        told(renderer.photons_of_round(pilots.is_none()));
-        let made = pool.install(|| renderer.maps(round, pilots.unwrap_or_default(), done));
+        let kept = shelf.and_then(|shelf| shelf.take(round));
+        let made = kept.and_then(|(kept, pilots)| renderer.maps_from(kept, &pilots)).unwrap_or_else(|| {
+            told(renderer.photons_of_round(pilots.is_none()));
+            let made = pool.install(|| renderer.maps(round, pilots.unwrap_or_default(), done));
+            shelf.inspect(|shelf| shelf.put(&made));
+            made
+        });
         let (account, bytes) = (made.account(), made.bytes());
         *maps.write().unwrap_or_else(PoisonError::into_inner) = Some(made);
         Photons { stored: account.kept, nonfinite: account.nonfinite, bytes, ..Photons::default() }

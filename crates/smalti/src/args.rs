@@ -63,6 +63,9 @@ pub struct RenderArgs {
     pub threads: u32,
     #[command(flatten)]
     pub work: WorkArgs,
+    /// Keep photon maps in this file and take them from it: renders of the same scene, with any camera, share them
+    #[arg(long, value_name = "FILE")]
+    pub photon_map: Option<PathBuf>,
     /// How progress is shown on stderr
     #[arg(long, value_name = "HOW", default_value = "auto")]
     pub progress: ProgressArg,

@@ -95,12 +95,11 @@ fn rays(summary: &Summary) -> String {
 
 fn photons(summary: &Summary) -> String {
     let Summary { photons_emitted: emitted, photons_stored: stored, photon_bytes, photon_seconds, .. } = summary;
-    match emitted {
-        0 => String::new(),
-        _ => format!(
-            "{emitted} emitted, {stored} stored in {photon_seconds:.3} s; a round takes {}",
-            in_words(*photon_bytes)
-        ),
+    let size = in_words(*photon_bytes);
+    match (emitted, stored) {
+        (0, 0) => String::new(),
+        (0, _) => format!("{stored} read in {photon_seconds:.3} s; a round takes {size}"),
+        _ => format!("{emitted} emitted, {stored} stored in {photon_seconds:.3} s; a round takes {size}"),
     }
 }
 

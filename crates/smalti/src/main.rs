@@ -11,6 +11,7 @@ mod job;
 mod memory;
 mod names;
 mod parse;
+mod photon_map;
 mod print;
 mod provenance;
 mod record;

@@ -1,7 +1,9 @@
 //! Where the emitted light went: what was emitted is what was stored, absorbed and lost to infinity, to rounding.
 
+use serde::{Deserialize, Serialize};
+
 /// The balance of a photon pass. Fluxes per channel, in the frame's units.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Account {
     /// Flux that was emitted.
     pub emitted: [f64; 3],

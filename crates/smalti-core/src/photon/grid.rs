@@ -1,12 +1,14 @@
 //! Values by place, in equal boxes: one look-up tells what is about a point.
 
+use serde::{Deserialize, Serialize};
+
 use crate::lanes::{Lanes, V3};
 
 /// Boxes along the longest side.
 const BOXES: f32 = 64.0;
 
 /// Equal boxes around some points.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Grid {
     low: [f32; 3],
     /// Boxes by length.
@@ -38,6 +40,12 @@ impl Grid {
     pub fn map(mut self, change: impl Fn(f32) -> f32) -> Self {
         self.boxes.iter_mut().for_each(|value| *value = change(*value));
         self
+    }
+
+    /// Whether it has as many boxes as it says.
+    pub fn is_sound(&self) -> bool {
+        let count = self.size.iter().try_fold(1u32, |product, side| product.checked_mul(*side));
+        count.is_some_and(|count| count > 0 && count as usize == self.boxes.len())
     }
 
     /// Bytes that it takes.

@@ -6,7 +6,9 @@
 //! the photon's number decides, so photons that share one coordinate, or all three, are no special case, and the tree
 //! is a function of the photons.
 
-use super::Photons;
+use serde::{Deserialize, Serialize};
+
+use super::{Photons, Tag};
 use crate::lanes::{Lanes, V3};
 
 /// Photons of a leaf: as many as the widest level looks at together.
@@ -19,7 +21,7 @@ pub type Split = [f32; 2];
 pub type Block = [[f32; BLOCK]; 4];
 
 /// A tree.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Tree {
     /// Splits of the nodes from 1 on.
     pub splits: Vec<Split>,
@@ -135,6 +137,15 @@ impl Tree {
             .map(|(place, _)| place)
             .collect();
         [0, 1, 2].map(|k: usize| photons.iter().map(|place| place[k]).sum::<f32>() / photons.len() as f32)
+    }
+
+    /// Whether it is a tree of photons on the primitives below `prims`: what walks through it goes nowhere else.
+    pub fn is_sound(&self, prims: u32) -> bool {
+        let axes = self.splits.iter().all(|[_, axis]| axis.to_bits() < 3);
+        let tags = self.blocks.iter().flat_map(|block| block[3]).filter(|tag| tag.is_finite());
+        let tags = tags.map(|tag| Tag(tag.to_bits())).all(|tag| tag.prim() < prims);
+        let counts = self.flux.len() == self.blocks.len() * BLOCK && self.len <= self.flux.len();
+        axes && tags && counts && self.splits.len() == self.blocks.len().saturating_sub(1)
     }
 
     /// Bytes that it takes.

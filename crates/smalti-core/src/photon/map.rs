@@ -1,10 +1,12 @@
 //! A photon map: [`SUB_MAPS`] trees of photons, each an estimate of all the light.
 
+use serde::{Deserialize, Serialize};
+
 use super::kd_tree::Tree;
 use super::{Account, Kind, SUB_MAPS};
 
 /// The photons that a round of samples asks.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Map {
     /// What it holds.
     pub kind: Kind,

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::kd_tree::Tree;
 use super::pass::{Pass, PhotonWorkspace, Traced};
@@ -68,15 +69,59 @@ impl Maps {
     }
 }
 
+/// The photons of a round alone: what can be kept for another render of the same scene.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Kept {
+    /// The round.
+    pub round: u32,
+    /// Light that came by specular surfaces.
+    pub caustic: Option<Map>,
+    /// All light.
+    pub global: Option<Map>,
+}
+
 /// What was sent ahead for each map.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pilots {
     caustic: Option<Arc<Pilot>>,
     global: Option<Arc<Pilot>>,
     visibility: Option<Arc<Visibility>>,
 }
 
+impl Maps {
+    /// The photons of the round alone.
+    pub fn kept(&self) -> Kept {
+        let of = |layer: &Option<Layer>| layer.as_ref().map(|layer| layer.map.clone());
+        Kept { round: self.round, caustic: of(&self.caustic), global: of(&self.global) }
+    }
+}
+
 impl Renderer {
+    /// The maps of a round from what was kept of them; `None` where that is not what this render needs.
+    pub fn maps_from(&self, kept: Kept, pilots: &Pilots) -> Option<Maps> {
+        let photons = self.plan().photons.as_ref()?;
+        let prims = self.scene().shades.len() as u32;
+        let layer = |pass: &Option<Pass>, map: Option<Map>, pilot: &Option<Arc<Pilot>>| match (pass, map, pilot) {
+            (None, None, _) => Some(None),
+            (Some(pass), Some(map), Some(pilot)) => {
+                let fits = map.kind == pass.kind && map.trees.len() == SUB_MAPS as usize && pilot.is_sound(prims);
+                let sound = fits && map.trees.iter().all(|tree| tree.is_sound(prims));
+                sound.then(|| Some(Layer { pilot: pilot.clone(), map }))
+            }
+            _ => None,
+        };
+        let visibility = pilots.visibility.clone();
+        let sound = visibility.as_ref().is_none_or(|visibility| visibility.is_sound(prims));
+        Some(Maps {
+            round: kept.round,
+            shrink: shrink(kept.round),
+            caustic: layer(&photons.caustic, kept.caustic, &pilots.caustic)?,
+            global: layer(&photons.global, kept.global, &pilots.global)?,
+            visibility,
+        })
+        .filter(|maps| sound && maps.visibility.is_some() == photons.shadow.is_some())
+    }
+
     /// Emits the photons of a round and builds its maps, on the threads of the current pool. `pilots` are those of
     /// another round's maps, which are the same for all; without them photons are sent ahead. `progress` counts the
     /// photons that were traced.

@@ -33,13 +33,15 @@ pub use pilot::Pilot;
 pub use surfaces::Surfaces;
 pub use visibility::Visibility;
 
+use serde::{Deserialize, Serialize};
+
 use crate::film::ROUND;
 
 /// Independent parts of a map, one for each sample of a round.
 pub const SUB_MAPS: u32 = ROUND;
 
 /// What a photon map holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[repr(u32)]
 pub enum Kind {
     /// Light that came to a diffuse surface by way of specular ones alone: L S+ D.

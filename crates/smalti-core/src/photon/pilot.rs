@@ -7,6 +7,7 @@
 use core::f32::consts::PI;
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::grid::Grid;
 use super::kd_tree::{BLOCK, Tree};
@@ -29,7 +30,7 @@ const LARGEST: f32 = 0.05;
 pub const SMALLEST: f32 = 1e-6;
 
 /// Photons that were sent ahead.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pilot {
     tree: Tree,
     /// For each leaf of the tree, how far photons count there in the first round; or the same for everywhere.
@@ -74,6 +75,11 @@ impl Pilot {
             radii.push(radius.unwrap_or(LARGEST));
         }
         Self { tree, radii, expected }
+    }
+
+    /// Whether it can be asked: see [`Tree::is_sound`].
+    pub fn is_sound(&self, prims: u32) -> bool {
+        self.tree.is_sound(prims) && self.radii.len() == self.tree.blocks.len().max(1) && self.expected.is_sound()
     }
 
     /// Bytes that it takes.

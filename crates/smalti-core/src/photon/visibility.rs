@@ -8,6 +8,8 @@
 //! the same and counts for the difference of what it finds and what the photons said: the saving is almost as large, and
 //! the mean is that of asking all.
 
+use serde::{Deserialize, Serialize};
+
 use super::kd_tree::{BLOCK, Tree};
 use super::{Surfaces, Tag};
 use crate::lanes::{Lanes, V3};
@@ -28,7 +30,7 @@ const LIGHTS: u32 = 32;
 pub const HIDDEN: u32 = 1 << 31;
 
 /// What photons say of the lights.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Visibility {
     tree: Tree,
     /// For each leaf the tag of its photons ([`MIXED`] if they differ), and one bit a light that is seen, that is hidden.
@@ -51,6 +53,11 @@ impl Visibility {
     pub fn new(tree: Tree) -> Self {
         let leaves = (0..tree.blocks.len()).map(|leaf| of_leaf(&tree, leaf)).collect();
         Self { tree, leaves }
+    }
+
+    /// Whether it can be asked: see [`Tree::is_sound`].
+    pub fn is_sound(&self, prims: u32) -> bool {
+        self.tree.is_sound(prims) && self.leaves.len() == self.tree.blocks.len()
     }
 
     /// Bytes that it takes.

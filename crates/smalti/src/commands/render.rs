@@ -1,12 +1,12 @@
 //! `smalti render`: a scene becomes image files and an account of how good they are.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use rayon::ThreadPool;
 use smalti_core::film::Film;
 use smalti_core::render::Renderer;
-use smalti_scheduler::{Outcome, Watch};
+use smalti_scheduler::{Outcome, Shelf, Watch, render_with};
 
 use crate::args::{ProgressArg, RenderArgs, When};
 use crate::describe::describe;
@@ -14,15 +14,17 @@ use crate::exit::{Failure, Status};
 use crate::frontend::{self, Mode, Title};
 use crate::interrupt::{self, Interrupt};
 use crate::job::Job;
+use crate::photon_map::PhotonMap;
 use crate::print::{self, Messages};
 use crate::summary::{Developed, Summary, Work, develop, summary};
-use crate::{error_statement, memory, provenance};
+use crate::{error_statement, memory, photon_map, provenance};
 
 /// Runs the command. `start` is when the process began.
 pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Failure> {
     let messages = Messages { json: args.progress == ProgressArg::Json };
     let outputs = outputs(args)?;
-    let job = Job::load(&args.scene, &args.image, args.work.simd.simd)?;
+    let mut job = Job::load(&args.scene, &args.image, args.work.simd.simd)?;
+    let photon_map = args.photon_map.as_deref().map(|path| open_photon_map(path, &mut job)).transpose()?;
     job.notes.iter().for_each(|note| messages.note(note));
     let pool = smalti_scheduler::pool(args.threads as usize).map_err(Failure::user)?;
     let renderer = pool.install(|| job.renderer())?;
@@ -30,7 +32,10 @@ pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Fa
     let work = Work { threads: pool.current_num_threads(), tile: job.tile(args.work.tile), setup: start.elapsed() };
 
     let mode = Mode::choose(args.progress, args.quiet, colour);
-    let mut outcome = perform(&renderer, &pool, &interrupt, work, mode, title(args, &job, work))?;
+    let film = Film::new(job.settings.area(), work.tile);
+    let workers = Workers { pool: &pool, interrupt: &interrupt, photon_map: photon_map.as_ref() };
+    let mut outcome = perform(&renderer, film, &workers, mode, title(args, &job, work))?;
+    let kept = photon_map.map_or(Ok(()), PhotonMap::finish);
     let developed = develop(&outcome.film);
     // Encoding needs memory too: the film, six times as large as the image, makes room.
     outcome.film.tiles = Vec::new();
@@ -42,7 +47,7 @@ pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Fa
         let written = write(&outputs, &developed, &mut summary, job.exposure(args.exposure));
         summary.wall_seconds = start.elapsed().as_secs_f64();
         tell(args, &summary, messages)?;
-        written?;
+        written.and(kept)?;
     }
     Ok(status(args.strict, &outcome, &interrupt))
 }
@@ -79,20 +84,28 @@ fn title(args: &RenderArgs, job: &Job, work: Work) -> Title {
     }
 }
 
+/// Opens the file of photon maps. Where nothing says how many photons, those of the file are taken.
+fn open_photon_map(path: &Path, job: &mut Job) -> Result<PhotonMap, Failure> {
+    if let Some(there) = photon_map::header(path)?.filter(|_| job.settings.photons.is_none()) {
+        job.settings.photons = Some(there.photons);
+    }
+    PhotonMap::open(path, &job.scene_hash, &job.settings)
+}
+
+/// Who renders, until when, and with which photons.
+struct Workers<'a> {
+    pool: &'a ThreadPool,
+    interrupt: &'a Interrupt,
+    photon_map: Option<&'a PhotonMap>,
+}
+
 /// Renders while a display shows it.
-fn perform(
-    renderer: &Renderer,
-    pool: &ThreadPool,
-    interrupt: &Interrupt,
-    work: Work,
-    mode: Mode,
-    title: Title,
-) -> Result<Outcome, Failure> {
-    let film = Film::new(renderer.settings().area(), work.tile);
+fn perform(renderer: &Renderer, film: Film, workers: &Workers, mode: Mode, title: Title) -> Result<Outcome, Failure> {
     let (display, watch) = frontend::start(mode, title);
     let error = error_statement::live(film.area.pixels());
     let watch = watch.map(|watch| Watch { error: Some(Box::new(error)), ..watch });
-    let outcome = smalti_scheduler::render(renderer, film, pool, &interrupt.cancel, watch);
+    let shelf = workers.photon_map.map(|map| map as &dyn Shelf);
+    let outcome = render_with(renderer, film, workers.pool, &workers.interrupt.cancel, watch, shelf);
     display.finish();
     outcome.map_err(Failure::bug)
 }

@@ -1,0 +1,156 @@
+//! `--photon-map`: the same image with and without it, from any camera; and files that do not fit are refused.
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// A glass ball under a small lamp, with two cameras.
+const SCENE: &str = r#"
+[camera.front]
+eye = [0, -4, 1]
+look_at = [0, 0, 0.5]
+up = [0, 0, 1]
+fov = 60
+
+[camera.above]
+eye = [0, 0, 3]
+look_at = [0, 0, 0]
+up = [0, 1, 0]
+fov = 60
+
+[render]
+size = [24, 16]
+spp = 20
+photons = 4000
+
+[material.floor]
+lambert = { albedo = [0.7, 0.5, 0.3] }
+[material.glass]
+dielectric = { ior = 1.5 }
+
+[[polygon]]
+material = "floor"
+vertices = [[-3, -3, 0], [3, -3, 0], [3, 3, 0], [-3, 3, 0]]
+
+[[sphere]]
+material = "glass"
+centre = [0, 0, 0.6]
+radius = 0.5
+
+[[light.quad]]
+vertices = [[-0.2, -0.2, 4], [-0.2, 0.2, 4], [0.2, 0.2, 4], [0.2, -0.2, 4]]
+radiance = [50, 50, 50]
+"#;
+
+/// A folder with the scene.
+struct Folder(TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("room.toml"), SCENE).unwrap();
+        Self(folder)
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn run(&self, flags: &str) -> Output {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_smalti"));
+        command.current_dir(self.0.path()).args(["render", "room.toml", "--json", "--progress", "none"]);
+        command.args(flags.split_whitespace()).output().unwrap()
+    }
+
+    fn render(&self, flags: &str) -> Value {
+        let output = self.run(flags);
+        assert!(output.status.success(), "{flags}: {}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice(&output.stdout).unwrap()
+    }
+
+    /// Asserts that the file is refused with this in the message, and nothing is made.
+    fn refuses(&self, flags: &str, part: &str) {
+        let before = fs::read_dir(self.0.path()).unwrap().count();
+        let output = self.run(flags);
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{flags}: {message}");
+        assert!(message.contains(part), "{flags}: {message}");
+        assert_eq!(fs::read_dir(self.0.path()).unwrap().count(), before, "{flags}");
+    }
+}
+
+#[test]
+fn renders_with_a_map_are_those_without() {
+    let folder = Folder::new();
+    for (camera, integrator) in [("front", "auto"), ("above", "auto"), ("front", "photon"), ("above", "photon")] {
+        let flags = format!("--camera {camera} --integrator {integrator}");
+        let kept = format!("{flags} --photon-map {integrator}.map");
+        let (alone, shared, again) = (folder.render(&flags), folder.render(&kept), folder.render(&kept));
+        assert_eq!(shared["hash"], alone["hash"], "{flags}");
+        assert_eq!(again["hash"], alone["hash"], "{flags}");
+        assert_eq!(again["photons_stored"], alone["photons_stored"]);
+        // The first camera traced for both.
+        assert_eq!(shared["photons_emitted"] == 0, camera == "above", "{flags}");
+        assert_eq!(again["photons_emitted"], 0);
+    }
+}
+
+#[test]
+fn a_map_grows_with_the_rounds_that_are_asked() {
+    let folder = Folder::new();
+    let first = folder.render("--spp 10 --photon-map a.map");
+    let more = folder.render("--spp 40 --photon-map a.map");
+    // One round was there, and with it what is sent ahead.
+    assert_eq!(first["photons_emitted"], 4000 + 32_768);
+    assert_eq!(more["photons_emitted"], 2 * 4000);
+    assert_eq!(more["hash"], folder.render("--spp 40")["hash"]);
+    assert_eq!(folder.render("--spp 40 --photon-map a.map")["photons_emitted"], 0);
+}
+
+#[test]
+fn without_a_number_of_photons_that_of_the_file_is_taken() {
+    let folder = Folder::new();
+    let scene = SCENE.replace("photons = 4000\n", "");
+    fs::write(folder.path("room.toml"), scene).unwrap();
+    let first = folder.render("--photons 2000 --photon-map a.map");
+    let second = folder.render("--size 300x200 --spp 1 --photon-map a.map");
+    assert_eq!((&first["photons"], &second["photons"]), (&Value::from(2000), &Value::from(2000)));
+}
+
+#[test]
+fn what_does_not_fit_is_refused_with_the_reason() {
+    let folder = Folder::new();
+    folder.render("--photon-map a.map");
+    folder.refuses("--photon-map a.map --seed 7", "seed is 0, this render asks for 7");
+    folder.refuses("--photon-map a.map --photons 5000", "number of photons is 4000, this render asks for 5000");
+    folder.refuses("--photon-map a.map --integrator photon", "integrator is auto");
+    folder.refuses("--photon-map a.map --integrator path", "asks no photons");
+    folder.refuses("--photon-map a.map --radius 0.5", "radius is none");
+    fs::write(folder.path("room.toml"), SCENE.replace("radius = 0.5", "radius = 0.4")).unwrap();
+    folder.refuses("--photon-map a.map", "scene");
+    folder.refuses("--photon-map nowhere/a.map", "nowhere");
+}
+
+#[test]
+fn damaged_truncated_and_foreign_files_are_refused() {
+    let folder = Folder::new();
+    folder.render("--photon-map a.map");
+    let whole = fs::read(folder.path("a.map")).unwrap();
+    // Every place of the beginning, where the structure is, and some of the rest.
+    let places = (0..300).step_by(7).chain((300..whole.len()).step_by(whole.len() / 40));
+    for place in places {
+        let mut damaged = whole.clone();
+        damaged[place] ^= 0x10;
+        fs::write(folder.path("a.map"), damaged).unwrap();
+        folder.refuses("--photon-map a.map", "a.map");
+        fs::write(folder.path("a.map"), &whole[..place]).unwrap();
+        folder.refuses("--photon-map a.map", "a.map");
+    }
+    fs::write(folder.path("a.map"), "P6 24 16 255 and so on, for longer than a header is").unwrap();
+    folder.refuses("--photon-map a.map", "is no photon map");
+    fs::write(folder.path("a.map"), &whole).unwrap();
+    folder.render("--photon-map a.map");
+}
