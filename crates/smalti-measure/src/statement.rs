@@ -45,8 +45,9 @@ pub fn error_statement(estimates: &[Estimate], width: u32, shared: u32) -> Optio
     let grid = Grid { estimates, width: width.max(1) as usize, shared: (shared as usize).clamp(1, estimates.len()) };
     let correlation = grid.channel_correlation();
     let mean = estimates.iter().flat_map(Estimate::mean).sum::<f64>() / (3 * estimates.len()) as f64;
-    let absolute = relative(&grid, &correlation, FLOOR)?;
-    let scaled = relative(&grid, &correlation, FLOOR * mean * mean)?;
+    let of = |floor: f64| relative(&grid, &correlation, floor);
+    let (absolute, scaled) = rayon::join(|| of(FLOOR), || of(FLOOR * mean * mean));
+    let (absolute, scaled) = (absolute?, scaled?);
     Some(ErrorStatement {
         relmse: absolute.value,
         relmse_low: absolute.low,

@@ -125,8 +125,9 @@ pub struct Developed {
 
 /// Develops a film.
 pub fn develop(film: &Film) -> Developed {
-    let bias = film.shifts().and_then(|shifts| smalti_measure::bias_statement(&shifts, film.area.width));
-    Developed { image: film.develop(), error: error_statement::of(film), bias, samples: film.samples() }
+    let bias = || film.shifts().and_then(|shifts| smalti_measure::bias_statement(&shifts, film.area.width));
+    let (error, (bias, image)) = rayon::join(|| error_statement::of(film), || (bias(), film.develop()));
+    Developed { image, error, bias, samples: film.samples() }
 }
 
 /// How the machine was used.

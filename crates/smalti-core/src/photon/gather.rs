@@ -68,8 +68,10 @@ impl Gather<'_> {
         }
         let Query { point, prim, .. } = *query;
         let (radius, small) = (query.radius, query.radius * l.f(core::f32::consts::FRAC_1_SQRT_2));
-        let whole = radius * radius * self.surfaces.part_of_disc(l, something, prim, point, radius);
-        let half = small * small * self.surfaces.part_of_disc(l, something, prim, point, small);
+        let part = self.surfaces.part_of_disc(l, something, prim, point, radius);
+        let cut = something & l.lt(part, l.f(1.0));
+        let inner_part = if l.any(cut) { self.surfaces.part_of_disc(l, cut, prim, point, small) } else { l.f(1.0) };
+        let (whole, half) = (radius * radius * part, small * small * inner_part);
         let by = l.f(core::f32::consts::FRAC_1_PI);
         Found { irradiance: found.irradiance.scale(by / whole), inner: found.inner.scale(by / half) }
     }

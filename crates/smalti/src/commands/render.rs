@@ -36,7 +36,7 @@ pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Fa
     let workers = Workers { pool: &pool, interrupt: &interrupt, photon_map: photon_map.as_ref() };
     let mut outcome = perform(&renderer, film, &workers, mode, title(args, &job, work))?;
     let kept = photon_map.map_or(Ok(()), PhotonMap::finish);
-    let developed = develop(&outcome.film);
+    let developed = pool.install(|| develop(&outcome.film));
     // Encoding needs memory too: the film, six times as large as the image, makes room.
     outcome.film.tiles = Vec::new();
     if let Some(signal) = interrupt.signal().filter(|_| outcome.interrupted) {
