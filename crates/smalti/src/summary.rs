@@ -6,6 +6,8 @@ use serde::Serialize;
 use smalti_core::film::{Film, Image, ROUND};
 use smalti_core::plan::LEAST_CONTRIBUTION;
 use smalti_core::render::{RayCounts, Rejected};
+use smalti_core::scene::World;
+use smalti_core::scene::world::Material;
 use smalti_core::settings::{Fresnel, Integrator, Rect, Settings};
 use smalti_measure::{BiasStatement, ErrorStatement};
 use smalti_scheduler::{Outcome, Timing};
@@ -177,7 +179,7 @@ pub fn summary(job: &Job, work: Work, outcome: &Outcome, developed: &Developed) 
         mean: developed.image.mean(),
         error: developed.error,
         bias: developed.bias,
-        biases: biases(&job.settings, outcome.capped),
+        biases: biases(&job.settings, &job.world, outcome.capped),
         tiles: tiles(&outcome.timing),
         idle: idle.iter().sum::<f64>() / idle.len().max(1) as f64,
         stopped_by: if outcome.interrupted { "interrupt" } else { "spp" },
@@ -205,13 +207,27 @@ fn tiles(timing: &Timing) -> Option<TilesRecord> {
     })
 }
 
+/// Whether the scene has light that goes from a point by specular surfaces to diffuse ones, and no photons carry it.
+fn lacks_point_caustics(settings: &Settings, world: &World) -> bool {
+    let has = |wanted: fn(&Material) -> bool| world.materials.iter().any(wanted);
+    let photons = settings.integrator.asks_photons() && settings.photons_of_round() > 0;
+    !photons
+        && !world.point_lights.is_empty()
+        && has(|material| matches!(material, Material::Lambert { .. }))
+        && has(|material| matches!(material, Material::Mirror { .. } | Material::Dielectric { .. }))
+}
+
 /// What more samples would not mend.
-fn biases(settings: &Settings, capped: u64) -> Vec<String> {
+fn biases(settings: &Settings, world: &World, capped: u64) -> Vec<String> {
     let mut biases = Vec::new();
     if settings.integrator == Integrator::Whitted {
         let least = 1.0 / LEAST_CONTRIBUTION;
         biases.push("whitted: no indirect diffuse light and no ambient term".into());
         biases.push(format!("whitted: branches that count for less than 1/{least} are not followed"));
+    }
+    if lacks_point_caustics(settings, world) {
+        let name = settings.integrator.name();
+        biases.push(format!("{name}: caustics of point lights are missing; only photons find them"));
     }
     if let Some(bounces) = settings.max_bounces {
         biases.push(format!("max_bounces: light that scatters more than {bounces} times is missing"));
