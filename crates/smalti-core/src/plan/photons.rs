@@ -40,7 +40,7 @@ impl Photons {
         let in_map = if all { vec![1; scene.lights.emitters.len()] } else { hard_to_find(scene) };
         let caustic = caustic(scene, settings, &in_map);
         let everywhere = Aim::everywhere(&scene.lights);
-        let global = (all && !everywhere.is_empty()).then(|| Pass {
+        let global = (all && !everywhere.is_empty() && !lacks_sky(scene, settings)).then(|| Pass {
             kind: Kind::Global,
             aim: everywhere,
             photons: settings.photons_of_round(),
@@ -60,6 +60,12 @@ impl Photons {
             radius: settings.radius.map(|radius| (radius * scene.frame.scale) as f32),
         })
     }
+}
+
+/// Whether a map of all light is asked for and left out, since no photons come from the sky: paths that end at such a map
+/// would not find it.
+pub fn lacks_sky(scene: &Scene, settings: &Settings) -> bool {
+    settings.integrator == Integrator::Photon && scene.environment.is_some()
 }
 
 /// Why a scene requires no photon map.

@@ -98,7 +98,9 @@ fn photon_maps(plan: &Plan, scene: &Scene, settings: &Settings) -> Vec<Decision>
         decision("photons", radius, shrinks, 0),
         decision("photons", "surfaces and their borders", surfaces, photons.surfaces.bytes()),
     ];
-    caustic.into_iter().chain(global).chain(shadow).chain(how).collect()
+    let lacking = "no photons come from the sky: paths look for it behind the first diffuse bounce too";
+    let left_out = photons::lacks_sky(scene, settings).then(|| decision("left out", "map of all light", lacking, 0));
+    caustic.into_iter().chain(global).chain(shadow).chain(how).chain(left_out).collect()
 }
 
 fn caustic_map(pass: &Pass, photons: &super::Photons, scene: &Scene) -> Decision {
