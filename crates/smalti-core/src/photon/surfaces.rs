@@ -53,7 +53,7 @@ impl Surfaces {
     pub fn new(scene: &Scene) -> Self {
         let edges = edges(scene);
         let mut leaders: Vec<u32> = (0..scene.shades.len() as u32).collect();
-        for (a, b) in edges.values().flat_map(|faces| smooth_pairs(scene, faces)) {
+        for (a, b) in edges.iter().flat_map(|(edge, faces)| smooth_pairs(scene, *edge, faces)) {
             let (a, b) = (leader(&mut leaders, a), leader(&mut leaders, b));
             leaders[a.max(b) as usize] = a.min(b);
         }
@@ -205,9 +205,26 @@ fn corner_pairs<'s>(scene: &'s Scene, face: &Face) -> impl Iterator<Item = (u32,
 }
 
 /// Pairs of faces that hardly bend across an edge that both have.
-fn smooth_pairs(scene: &Scene, faces: &[u32]) -> Vec<(u32, u32)> {
+fn smooth_pairs(scene: &Scene, edge: Edge, faces: &[u32]) -> Vec<(u32, u32)> {
     let pairs = faces.iter().enumerate().flat_map(|(k, a)| faces[..k].iter().map(|b| (*a, *b)));
-    pairs.filter(|(a, b)| normal(scene, *a).dot(normal(scene, *b)).abs() >= SMOOTH).collect()
+    pairs.filter(|(a, b)| is_smooth(scene, edge, (*a, *b))).collect()
+}
+
+/// Whether a surface goes on across an edge from one face to another: whichever sides they show, they must lie on
+/// opposite sides of it. The faces of a blade lie on the same.
+fn is_smooth(scene: &Scene, edge: Edge, (a, b): (u32, u32)) -> bool {
+    inward(scene, a, edge).dot(inward(scene, b, edge)) <= -SMOOTH
+}
+
+/// Unit vector in a face, across one of its edges and into the face.
+fn inward(scene: &Scene, prim: u32, (a, b): Edge) -> DVec3 {
+    let along = (point(scene, b) - point(scene, a)).normalize_or_zero();
+    let turned = corner_pairs(scene, &scene.faces[prim as usize]).any(|pair| pair == (b, a));
+    normal(scene, prim).cross(if turned { -along } else { along })
+}
+
+fn point(scene: &Scene, corner: u32) -> DVec3 {
+    DVec3::from_array(scene.vertices[corner as usize].map(f64::from))
 }
 
 fn normal(scene: &Scene, prim: u32) -> DVec3 {
@@ -219,13 +236,12 @@ fn normal(scene: &Scene, prim: u32) -> DVec3 {
 fn borders(scene: &Scene, prim: u32, edges: &HashMap<Edge, Vec<u32>>) -> Vec<[f32; 4]> {
     let Some(face) = scene.faces.get(prim as usize) else { return Vec::new() };
     let goes_on = |(a, b): &Edge| {
-        let others = edges[&(*a.min(b), *a.max(b))].iter().filter(|other| **other != prim);
-        others.into_iter().any(|other| normal(scene, prim).dot(normal(scene, *other)).abs() >= SMOOTH)
+        let edge = (*a.min(b), *a.max(b));
+        edges[&edge].iter().any(|other| *other != prim && is_smooth(scene, edge, (prim, *other)))
     };
-    let point = |corner: u32| DVec3::from_array(scene.vertices[corner as usize].map(f64::from));
-    let border = |(a, b): Edge| {
-        let inward = normal(scene, prim).cross(point(b) - point(a)).normalize_or_zero();
-        let offset = inward.dot(point(a));
+    let border = |edge: Edge| {
+        let inward = inward(scene, prim, edge);
+        let offset = inward.dot(point(scene, edge.0));
         [inward.x as f32, inward.y as f32, inward.z as f32, offset as f32]
     };
     corner_pairs(scene, face).filter(|edge| !goes_on(edge)).map(border).collect()
