@@ -49,6 +49,25 @@ pub fn render(world: &World, settings: &Settings) -> Rendered {
     Rendered { image, mean, standard_error, pixels, capped: works.iter().map(|work| work.capped).sum() }
 }
 
+/// The means of some independent renders.
+pub struct Repeated {
+    /// Mean of each channel over all renders.
+    pub mean: [f64; 3],
+    /// Standard error of that mean.
+    pub standard_error: [f64; 3],
+}
+
+/// Renders once with each of `count` seeds from `first` on. The spread of the renders tells the error also where pixels
+/// share photons and are not independent.
+pub fn repeat(world: &World, settings: &Settings, first: u64, count: u64) -> Repeated {
+    let of_seed = |seed| render(world, &Settings { seed, ..settings.clone() }).mean;
+    let means: Vec<[f64; 3]> = (first..first + count).map(of_seed).collect();
+    let n = means.len() as f64;
+    let mean = [0, 1, 2].map(|c: usize| means.iter().map(|mean| mean[c]).sum::<f64>() / n);
+    let square = |c: usize| means.iter().map(|of_seed| (of_seed[c] - mean[c]) * (of_seed[c] - mean[c])).sum::<f64>();
+    Repeated { mean, standard_error: [0, 1, 2].map(|c| (square(c) / (n * (n - 1.0))).sqrt()) }
+}
+
 /// Adds samples until every pixel has `spp`: round by round where each round has photons of its own.
 fn advance(renderer: &Renderer, film: &mut Film, spp: u32) -> Vec<Work> {
     let by_rounds = renderer.plan().photons.is_some();
@@ -74,22 +93,41 @@ fn total(pixels: &[Estimate]) -> ([f64; 3], [f64; 3]) {
     (mean, sum(Estimate::variance).map(|x| x.sqrt() / count))
 }
 
-impl Rendered {
-    /// Asserts the seeded equivalence to a true value: the standard error is at most a fifth of the tolerance (a noisy
-    /// render may not pass by being noisy) and the mean within the tolerance, both relative to `truth`.
+impl Repeated {
+    /// [`assert_near`] for every channel.
     ///
     /// # Panics
     /// When it is not so.
     pub fn assert_rgb(&self, name: &str, truth: [f64; 3], tolerance: f64) {
-        for channel in 0..3 {
-            let (mean, error, truth) = (self.mean[channel], self.standard_error[channel], truth[channel]);
-            let off = mean / truth - 1.0;
-            let error = error / truth;
-            assert!(error <= tolerance / 5.0, "{name}: standard error {error:.2e} needs {:.2e}", tolerance / 5.0);
-            assert!(
-                off.abs() <= tolerance,
-                "{name}: {mean:.9} is off {truth:.9} by {off:.2e} (se {error:.1e}, tolerance {tolerance:.1e})"
-            );
+        for (channel, truth) in truth.into_iter().enumerate() {
+            assert_near(name, (self.mean[channel], self.standard_error[channel]), truth, tolerance);
+        }
+    }
+}
+
+/// Asserts the seeded equivalence of a mean with its standard error to a true value: the standard error is at most a
+/// fifth of the tolerance (what is noisy may not pass by being noisy) and the mean within the tolerance, both relative
+/// to `truth`.
+///
+/// # Panics
+/// When it is not so.
+pub fn assert_near(name: &str, (mean, error): (f64, f64), truth: f64, tolerance: f64) {
+    let (off, error) = (mean / truth - 1.0, error / truth);
+    assert!(error <= tolerance / 5.0, "{name}: standard error {error:.2e} needs {:.2e}", tolerance / 5.0);
+    assert!(
+        off.abs() <= tolerance,
+        "{name}: {mean:.9} is off {truth:.9} by {off:.2e} (se {error:.1e}, tolerance {tolerance:.1e})"
+    );
+}
+
+impl Rendered {
+    /// [`assert_near`] for every channel.
+    ///
+    /// # Panics
+    /// When it is not so.
+    pub fn assert_rgb(&self, name: &str, truth: [f64; 3], tolerance: f64) {
+        for (channel, truth) in truth.into_iter().enumerate() {
+            assert_near(name, (self.mean[channel], self.standard_error[channel]), truth, tolerance);
         }
     }
 

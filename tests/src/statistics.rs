@@ -1,6 +1,6 @@
 //! The statistics that tests decide by.
 
-use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
+use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
 
 /// The level of each of `count` tests with which all together have level `alpha` (Šidák).
 pub fn sidak(alpha: f64, count: usize) -> f64 {
@@ -15,6 +15,11 @@ pub fn two_sided(z: f64) -> f64 {
 /// The |z| that a standard normal value passes with chance `alpha`.
 pub fn critical(alpha: f64) -> f64 {
     -Normal::standard().inverse_cdf(alpha / 2.0)
+}
+
+/// The |t| that Student's t with `freedom` degrees of freedom passes with chance `alpha`.
+pub fn critical_of_t(alpha: f64, freedom: f64) -> f64 {
+    -StudentsT::new(0.0, 1.0, freedom).expect("some freedom").inverse_cdf(alpha / 2.0)
 }
 
 /// Pearson's χ² of counts against expected counts: the chance of a fit at least as bad. Cells that expect fewer than 5
@@ -51,6 +56,12 @@ mod tests {
         assert!((two_sided(1.959_963_985) - 0.05).abs() < 1e-9);
         assert!((critical(0.05) - 1.959_963_985).abs() < 1e-8);
         assert!((critical(1e-6) - 4.891_638_475).abs() < 1e-6);
+    }
+
+    #[test]
+    fn tails_of_few_values_are_the_tables() {
+        assert!((critical_of_t(0.05, 10.0) - 2.228_138_852).abs() < 1e-6);
+        assert!((critical_of_t(0.001, 14.0) - 4.140_454_113).abs() < 1e-6);
     }
 
     #[test]

@@ -7,6 +7,7 @@ pub mod hit;
 mod light;
 pub mod optics;
 mod path;
+pub mod photon;
 mod picture;
 mod random;
 mod whitted;

@@ -1,6 +1,7 @@
 //! Renderers that must agree: streams and the oracle, and streams with streams under other settings.
 
 mod oracle;
+mod photons;
 mod primary;
 mod scenes;
 mod settings;

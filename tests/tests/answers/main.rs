@@ -4,3 +4,5 @@ mod dielectric;
 mod exact;
 mod furnace;
 mod lambert;
+mod photons;
+mod progressive;

@@ -3,6 +3,7 @@
 mod accel;
 mod frame;
 mod hidden;
+mod photons;
 mod rays;
 mod samples;
 mod shapes;

@@ -4,6 +4,8 @@ mod closed;
 mod kernels;
 mod leaving;
 mod lights;
+mod photon_maps;
+mod photons;
 mod scattering;
 mod warps;
 

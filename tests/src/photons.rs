@@ -1,0 +1,83 @@
+//! Photons emitted, laid out and asked in small numbers: what a renderer does with them, taken apart.
+
+use glam::DVec3;
+use rayon::prelude::*;
+use smalti_core::lanes::{One, V3};
+use smalti_core::photon::gather::{Gather, Query};
+use smalti_core::photon::kd_tree::Tree;
+use smalti_core::photon::pass::{Pass, PhotonWorkspace};
+use smalti_core::photon::{Account, Kind, Map, Photons, SUB_MAPS, Surfaces, Traced};
+use smalti_core::render::{Level, Renderer};
+use smalti_core::scene::World;
+use smalti_core::settings::{Integrator, Settings};
+
+/// A renderer that maps all light, at the best SIMD level.
+///
+/// # Panics
+/// Where the settings do not suit the scene.
+pub fn mapper(world: &World, settings: Settings) -> Renderer {
+    let settings = Settings { integrator: Integrator::Photon, ..settings };
+    Renderer::new(world, settings, Level::available()[0]).expect("the settings suit the scene")
+}
+
+/// Emits `count` photons as one estimate of all the light and follows them. Every `round` has its own numbers.
+pub fn trace(renderer: &Renderer, pass: &Pass, count: u32, round: u32) -> Traced {
+    let pass = Pass { photons: count * SUB_MAPS, ..pass.clone() };
+    let batches: Vec<Traced> = pass
+        .sub_map(round, 0)
+        .into_par_iter()
+        .map_init(PhotonWorkspace::new, |workspace, batch| renderer.trace_photons(&pass, batch, workspace))
+        .collect();
+    let mut all = Traced::default();
+    for batch in &batches {
+        all.photons.append(&batch.photons);
+        all.account += &batch.account;
+    }
+    all
+}
+
+/// A map whose first part holds these photons, and whose others are empty.
+pub fn map_of(photons: &Photons) -> Map {
+    let mut trees = vec![Tree::default(); SUB_MAPS as usize];
+    trees[0] = Tree::new(photons);
+    Map::new(Kind::Global, 0, trees, Account::default())
+}
+
+/// A place on a surface, in the scene's frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// Where.
+    pub point: [f32; 3],
+    /// Unit normal on the side that asks.
+    pub normal: [f32; 3],
+    /// The primitive.
+    pub prim: u32,
+}
+
+impl Place {
+    /// A point of the world on the primitive `prim`.
+    pub fn new(renderer: &Renderer, prim: u32, point: DVec3, normal: DVec3) -> Self {
+        let point = renderer.scene().frame.point(point).as_vec3().to_array();
+        Self { point, normal: normal.as_vec3().to_array(), prim }
+    }
+}
+
+/// Irradiance at a place by one part of a map, from photons within `radius` (in the frame) and with at most
+/// `most_bounces` scattering events before.
+pub fn irradiance(
+    (map, sub_map, most_bounces): (&Map, u32, u32),
+    surfaces: &Surfaces,
+    place: &Place,
+    radius: f32,
+) -> [f64; 3] {
+    let query = Query {
+        point: V3::splat(One, place.point),
+        normal: V3::splat(One, place.normal),
+        prim: place.prim,
+        asks: true,
+        sub_map,
+        radius,
+    };
+    let found = Gather { map, surfaces, most_bounces }.irradiance(One, &query).irradiance;
+    [found.x, found.y, found.z].map(f64::from)
+}
