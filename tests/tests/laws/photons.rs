@@ -228,8 +228,8 @@ fn aimed_photons_bring_what_photons_sent_everywhere_bring() {
                 let error = (expected.1 + found.1).sqrt();
                 let off = found.0 / expected.0 - 1.0;
                 let name = format!("{name}, {how}, ball {k}");
-                assert!(error < 0.006 * expected.0, "{name}: known only to {:e}", error / expected.0);
-                assert!(off.abs() < 0.03, "{name}: {found:?} instead of {expected:?}, off by {off:e}");
+                assert!(error < 0.015 * expected.0, "{name}: known only to {:e}", error / expected.0);
+                assert!(off.abs() < 0.075, "{name}: {found:?} instead of {expected:?}, off by {off:e}");
                 assert!(off.abs() < 6.0 * error / expected.0, "{name}: {found:?} instead of {expected:?}");
             }
         }
