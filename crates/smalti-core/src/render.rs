@@ -1,6 +1,7 @@
 //! The renderer as others see it: a compiled scene, a plan and the means to add samples to a tile.
 
 use std::ops::{ControlFlow, Range};
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::film::{ROUND, Shift, Tile};
@@ -8,6 +9,7 @@ pub use crate::lanes::Level;
 use crate::lanes::dispatch;
 use crate::photon::gather::Gather;
 use crate::photon::maps::{Layer, Maps};
+use crate::photon::pass::PhotonWorkspace;
 pub use crate::plan::{Decision, PlanError};
 use crate::plan::{Plan, Stage};
 pub use crate::replay::Vertex;
@@ -67,6 +69,8 @@ pub struct Renderer {
     settings: Settings,
     level: Level,
     token: Option<fearless_simd::Level>,
+    /// Buffers of photon passes that nobody uses at the moment.
+    pub(crate) photon_workspaces: Mutex<Vec<PhotonWorkspace>>,
 }
 
 /// Buffers of one worker; made once and reused.
@@ -93,7 +97,7 @@ impl Renderer {
     pub fn new(world: &World, settings: Settings, level: Level) -> Result<Self, PlanError> {
         let scene = compile(world, settings.integrator == Integrator::Whitted);
         let plan = Plan::new(&scene, &settings)?;
-        Ok(Self { scene, plan, settings, level, token: level.token() })
+        Ok(Self { scene, plan, settings, level, token: level.token(), photon_workspaces: Mutex::default() })
     }
 
     /// Settings of this render.

@@ -52,14 +52,14 @@ pub struct Gather<'a> {
     pub most_bounces: u32,
 }
 
-/// Flux of a lane's photons: of those that count, and of those in the inner half.
-type Sums = [[f32; 16]; 6];
+/// Flux of a lane's photons: of those that count, and of those in the inner half. In f64: a disc may hold very many.
+type Sums = [[f64; 16]; 6];
 
 impl Gather<'_> {
     /// Irradiance at the points of a packet.
     #[inline(always)]
     pub fn irradiance<L: Lanes>(&self, l: L, query: &Query<L>) -> Found<L> {
-        let [r, g, b, inner_r, inner_g, inner_b] = &self.sums(l, query);
+        let [r, g, b, inner_r, inner_g, inner_b] = &self.sums(l, query).map(|sums| sums.map(|sum| sum as f32));
         let irradiance = V3::new(l.load(r), l.load(g), l.load(b));
         let found = Found { irradiance, inner: V3::new(l.load(inner_r), l.load(inner_g), l.load(inner_b)) };
         let something = query.asks & l.lt(l.f(0.0), found.irradiance.max_component(l));
@@ -166,9 +166,9 @@ impl Gather<'_> {
             return;
         }
         for (k, flux) in [r, g, b].into_iter().enumerate() {
-            sums[k][lane] += flux;
+            sums[k][lane] += f64::from(flux);
             if inner {
-                sums[3 + k][lane] += flux;
+                sums[3 + k][lane] += f64::from(flux);
             }
         }
     }

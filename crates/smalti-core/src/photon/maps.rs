@@ -3,14 +3,14 @@
 //! Rounds are independent, and their radius shrinks by r²ᵢ₊₁ = r²ᵢ (i + α) / (i + 1) (Knaus and Zwicker 2011, after
 //! Hachisuka and Jensen 2009), so that noise and bias of their mean both go to zero.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, PoisonError};
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::kd_tree::Tree;
-use super::pass::{Pass, PhotonWorkspace, Traced};
+use super::pass::{Pass, Traced};
 use super::{Account, Batch, Map, Photons, Pilot, SUB_MAPS, Visibility, pilot};
 use crate::render::Renderer;
 
@@ -173,12 +173,16 @@ impl Renderer {
 
     /// The batches, traced in parallel, in their order.
     fn traced(&self, pass: &Pass, batches: Vec<Batch>, progress: &AtomicU64) -> Vec<Traced> {
-        let trace = |workspace: &mut PhotonWorkspace, batch: Batch| {
-            let traced = self.trace_photons(pass, batch, workspace);
+        let trace = |batch: Batch| {
+            // Buffers are made once and passed on: making them takes as long as tracing a small batch.
+            let free = || self.photon_workspaces.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut workspace = free().pop().unwrap_or_default();
+            let traced = self.trace_photons(pass, batch, &mut workspace);
+            free().push(workspace);
             progress.fetch_add(batch.count.into(), Ordering::Relaxed);
             traced
         };
-        batches.into_par_iter().map_init(PhotonWorkspace::new, trace).collect()
+        batches.into_par_iter().map(trace).collect()
     }
 }
 

@@ -83,17 +83,18 @@ impl Photons {
     }
 }
 
-/// On which primitive and which side of it a photon landed; and, in a tree, the axis at which its node splits.
+/// On which primitive and which side of it a photon landed. It has [`Tag::BITS`] bits, so they are those of a
+/// finite f32.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tag(pub u32);
 
 impl Tag {
-    /// Bits of the primitive's number; above them the side, then the axis.
+    /// Bits of the primitive's number; the side is above them.
     pub const PRIM: u32 = (1 << 29) - 1;
     /// Set where the photon came from the side of the normal.
     pub const OUTSIDE: u32 = 1 << 29;
-    /// The axis is above.
-    pub const AXIS: u32 = 30;
+    /// Bits of a tag.
+    pub const BITS: u32 = 30;
 
     /// Of a photon that landed on `prim`.
     pub fn new(prim: u32, outside: bool) -> Self {

@@ -83,7 +83,6 @@ pub struct Traced {
 }
 
 /// Buffers of a worker; made once and reused.
-#[derive(Default)]
 pub struct PhotonWorkspace {
     photons: Stream,
     next: Stream,
@@ -94,9 +93,8 @@ pub struct PhotonWorkspace {
     slots: emit::Slots,
 }
 
-impl PhotonWorkspace {
-    /// Empty buffers.
-    pub fn new() -> Self {
+impl Default for PhotonWorkspace {
+    fn default() -> Self {
         let stream = || Stream::new(PHOTONS as usize, Columns::default());
         Self {
             photons: stream(),

@@ -23,8 +23,9 @@ pub const ONE_IN: u32 = 16;
 /// Photons of a light that decide a leaf for it.
 const ENOUGH: u32 = 4;
 
-/// Lights that are told apart: those of higher numbers are never decided.
-const LIGHTS: u32 = 32;
+/// Lights that are told apart: those of higher numbers are never decided. (Their bits are those of an f32 that is a
+/// number.)
+const LIGHTS: u32 = 23;
 
 /// Mark of a photon that went through something, among its scattering events.
 pub const HIDDEN: u32 = 1 << 31;
@@ -38,7 +39,7 @@ pub struct Visibility {
 }
 
 /// No tag: photons of a leaf lie on several primitives or sides.
-const MIXED: u32 = u32::MAX;
+const MIXED: u32 = 1 << Tag::BITS;
 
 /// What is decided at a packet of points.
 #[derive(Clone, Copy)]
