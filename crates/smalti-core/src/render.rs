@@ -10,6 +10,7 @@ use crate::lanes::dispatch;
 use crate::photon::gather::Gather;
 use crate::photon::maps::{Layer, Maps};
 use crate::photon::pass::PhotonWorkspace;
+use crate::photon::{Kind, Quantity, SUB_MAPS, Show};
 pub use crate::plan::{Decision, PlanError};
 use crate::plan::{Plan, Stage};
 pub use crate::replay::Vertex;
@@ -97,6 +98,16 @@ impl Renderer {
     pub fn new(world: &World, settings: Settings, level: Level) -> Result<Self, PlanError> {
         let scene = compile(world, settings.integrator == Integrator::Whitted);
         let plan = Plan::new(&scene, &settings)?;
+        Ok(Self { scene, plan, settings, level, token: level.token(), photon_workspaces: Mutex::default() })
+    }
+
+    /// Compiles `world` and plans to show a photon map of it, instead of all the light.
+    ///
+    /// # Errors
+    /// A scene in which that map is empty.
+    pub fn showing(world: &World, settings: Settings, show: Show, level: Level) -> Result<Self, PlanError> {
+        let scene = compile(world, false);
+        let plan = Plan::showing(&scene, &settings, show)?;
         Ok(Self { scene, plan, settings, level, token: level.token(), photon_workspaces: Mutex::default() })
     }
 
@@ -239,7 +250,8 @@ impl Renderer {
             first = rays.len();
         }
         assert!(first <= MOST_SLOTS);
-        slots.reset(first, self.plan.photons.is_some());
+        let shifts = self.plan.has(|stage| matches!(stage, Stage::Caustic | Stage::Gather));
+        slots.reset(first, shifts);
     }
 
     /// Runs one stage over its stream: the one place where stages are told apart.
@@ -275,6 +287,12 @@ impl Renderer {
                 let Some(context) = self.photons(bounce, maps, maps.global.as_ref()) else { return };
                 dispatch!(token, l => gather::last(l, &context, diffuse, (asking, first), slots));
             }
+            Stage::Show(Show { map, quantity }) => {
+                let layer = if map == Kind::Caustic { &maps.caustic } else { &maps.global };
+                let Some(context) = self.photons(bounce, maps, layer.as_ref()) else { return };
+                let what = self.shown(quantity);
+                dispatch!(token, l => gather::shown(l, &context, what, diffuse, slots));
+            }
             Stage::Diffuse => dispatch!(token, l => diffuse::run(l, settings.sampler, bounce, diffuse, next)),
             Stage::Mirror(ending) => {
                 dispatch!(token, l => mirror::run(l, scene, ending, bounce, mirror, next));
@@ -301,6 +319,18 @@ impl Renderer {
             reference: photons.reference,
             sampler: self.settings.sampler,
         })
+    }
+
+    /// What is shown of a map, how many trees it has, and what the figure of a tree counts for: of radiance each sub-map
+    /// has all, of photons each tree its part; the frame's area is not a square metre.
+    fn shown(&self, quantity: Quantity) -> (Quantity, u32, f32) {
+        let trees = self.plan.trees(&self.settings);
+        let scale = self.scene.frame.scale;
+        let counts = match quantity {
+            Quantity::Radiance => f64::from(trees) / f64::from(SUB_MAPS),
+            Quantity::Count => f64::from(trees) * scale * scale,
+        };
+        (quantity, trees, counts as f32)
     }
 
     fn sort(&self, ends: bool, workspace: &mut Workspace) {

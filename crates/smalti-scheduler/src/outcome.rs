@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::time::Duration;
 
 use smalti_core::film::Film;
+use smalti_core::photon::Account;
 use smalti_core::render::{RayCounts, Rejected};
 use smalti_core::settings::Rect;
 
@@ -29,7 +30,7 @@ pub struct Outcome {
 }
 
 /// What photons came to.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Photons {
     /// Photons that were emitted, those that were sent ahead included.
     pub emitted: u64,
@@ -39,6 +40,10 @@ pub struct Photons {
     pub nonfinite: u64,
     /// Bytes of the maps; of several rounds the most.
     pub bytes: u64,
+    /// Where the light went of those in the maps, in the frame's units.
+    pub account: Account,
+    /// How far they count, the least and the most, in the frame.
+    pub radii: Option<[f32; 2]>,
     /// Time to emit, trace and build.
     pub elapsed: Duration,
 }
@@ -50,6 +55,9 @@ impl Photons {
         self.stored += other.stored;
         self.nonfinite += other.nonfinite;
         self.bytes = self.bytes.max(other.bytes);
+        self.account += &other.account;
+        let wider = |a: [f32; 2], b: [f32; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+        self.radii = self.radii.into_iter().chain(other.radii).reduce(wider);
         self.elapsed += other.elapsed;
     }
 }

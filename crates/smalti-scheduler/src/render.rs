@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use rayon::ThreadPool;
 use smalti_core::film::{Film, ROUND, Tile};
-use smalti_core::photon::Maps;
+use smalti_core::photon::{Account, Maps};
 use smalti_core::render::{Renderer, Work};
 
 use crate::account::{Record, least, outcome};
@@ -54,9 +54,10 @@ pub fn render_with(
             shelf.inspect(|shelf| shelf.put(&made));
             made
         });
-        let (account, bytes) = (made.account(), made.bytes());
+        let (account, bytes, radii) = (made.account(), made.bytes(), made.radii());
         *maps.write().unwrap_or_else(PoisonError::into_inner) = Some(made);
-        Photons { stored: account.kept, nonfinite: account.nonfinite, bytes, ..Photons::default() }
+        let Account { kept: stored, nonfinite, .. } = account;
+        Photons { stored, nonfinite, bytes, account, radii, ..Photons::default() }
     };
     let job = Job {
         spp: renderer.settings().spp,

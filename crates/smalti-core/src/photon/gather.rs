@@ -10,7 +10,7 @@
 
 use super::kd_tree::{BLOCK, Tree};
 use super::surfaces::Group;
-use super::{Map, Surfaces, Tag};
+use super::{Map, Quantity, Surfaces, Tag};
 use crate::lanes::{Lanes, Rgb, V3};
 
 /// Photons this much of the radius above or below the disc do not count.
@@ -26,7 +26,7 @@ pub struct Query<L: Lanes> {
     pub prim: L::U,
     /// Lanes that ask.
     pub asks: L::M,
-    /// Which sub-map.
+    /// Which of the map's trees.
     pub sub_map: L::U,
     /// How far photons count.
     pub radius: L::F,
@@ -59,7 +59,8 @@ impl Gather<'_> {
     /// Irradiance at the points of a packet.
     #[inline(always)]
     pub fn irradiance<L: Lanes>(&self, l: L, query: &Query<L>) -> Found<L> {
-        let [r, g, b, inner_r, inner_g, inner_b] = &self.sums(l, query).map(|sums| sums.map(|sum| sum as f32));
+        let [r, g, b, inner_r, inner_g, inner_b] =
+            &self.sums(l, query, Quantity::Radiance).map(|sums| sums.map(|sum| sum as f32));
         let irradiance = V3::new(l.load(r), l.load(g), l.load(b));
         let found = Found { irradiance, inner: V3::new(l.load(inner_r), l.load(inner_g), l.load(inner_b)) };
         let something = query.asks & l.lt(l.f(0.0), found.irradiance.max_component(l));
@@ -76,17 +77,30 @@ impl Gather<'_> {
         Found { irradiance: found.irradiance.scale(by / whole), inner: found.inner.scale(by / half) }
     }
 
+    /// What `quantity` says of the photons at the points of a packet, by area.
+    #[inline(always)]
+    pub fn shown<L: Lanes>(&self, l: L, query: &Query<L>, quantity: Quantity) -> Rgb<L> {
+        let [x, y, z, ..] = &self.sums(l, query, quantity).map(|sums| sums.map(|sum| sum as f32));
+        let found = V3::new(l.load(x), l.load(y), l.load(z));
+        let something = query.asks & l.lt(l.f(0.0), found.max_component(l));
+        if !l.any(something) {
+            return found;
+        }
+        let part = self.surfaces.part_of_disc(l, something, query.prim, query.point, query.radius);
+        found.scale(l.f(core::f32::consts::FRAC_1_PI) / (query.radius * query.radius * part))
+    }
+
     /// Sums for every lane.
     #[inline(always)]
-    fn sums<L: Lanes>(&self, l: L, query: &Query<L>) -> Sums {
+    fn sums<L: Lanes>(&self, l: L, query: &Query<L>, quantity: Quantity) -> Sums {
         let mut sums = [[0.0; 16]; 6];
-        let mut points = Points::new(l, self.surfaces, query);
+        let points = Points::new(l, self.surfaces, query);
         let mut left = l.bitmask(query.asks);
         // Points of one packet mostly ask the same sub-map.
         while left != 0 {
             let tree = points.sub_maps[left.trailing_zeros() as usize % 16];
             let here = query.asks & l.eq_u(query.sub_map, l.u(tree));
-            self.walk(l, query, here, &self.map.trees[tree as usize], &mut points, &mut sums);
+            self.walk(l, query, here, &self.map.trees[tree as usize], (&points, quantity), &mut sums);
             left &= !l.bitmask(here);
         }
         sums
@@ -97,7 +111,15 @@ impl Gather<'_> {
     /// Where both sides of a split are near enough, one waits: bit k of `waiting` is set when the sibling of the node's
     /// ancestor k levels up waits. So the whole stack of a lane is one number.
     #[inline(always)]
-    fn walk<L: Lanes>(&self, l: L, query: &Query<L>, asks: L::M, tree: &Tree, points: &mut Points, sums: &mut Sums) {
+    fn walk<L: Lanes>(
+        &self,
+        l: L,
+        query: &Query<L>,
+        asks: L::M,
+        tree: &Tree,
+        (points, quantity): (&Points, Quantity),
+        sums: &mut Sums,
+    ) {
         let leaves = tree.blocks.len() as u32;
         if leaves == 0 {
             return;
@@ -121,7 +143,8 @@ impl Gather<'_> {
             l.store_u(node, &mut nodes);
             while left != 0 {
                 let lane = left.trailing_zeros() as usize % 16;
-                self.look(l, tree, (nodes[lane] - leaves) as usize, &points.lanes[lane], (sums, lane));
+                let leaf = (nodes[lane] - leaves) as usize;
+                self.look(l, (tree, leaf), &points.lanes[lane], quantity, (sums, lane));
                 left &= left - 1;
             }
             // Up to the lowest ancestor whose sibling waits, and over to it.
@@ -135,7 +158,14 @@ impl Gather<'_> {
 
     /// Looks at the photons of a leaf from one point.
     #[inline(always)]
-    fn look<L: Lanes>(&self, l: L, tree: &Tree, leaf: usize, point: &Point, (sums, lane): (&mut Sums, usize)) {
+    fn look<L: Lanes>(
+        &self,
+        l: L,
+        (tree, leaf): (&Tree, usize),
+        point: &Point,
+        quantity: Quantity,
+        (sums, lane): (&mut Sums, usize),
+    ) {
         let [xs, ys, zs, tags] = &tree.blocks[leaf];
         let (from, normal) = (V3::splat(l, point.place), V3::splat(l, point.normal));
         for first in (0..BLOCK).step_by(L::WIDTH) {
@@ -153,7 +183,7 @@ impl Gather<'_> {
                 let k = left.trailing_zeros() as usize % 16;
                 let at = first + k;
                 if point.sees(self.surfaces, tags[at].to_bits()) {
-                    self.add(tree.flux[leaf * BLOCK + at], inner >> k & 1 == 1, sums, lane);
+                    self.add(tree.flux[leaf * BLOCK + at], quantity, inner >> k & 1 == 1, (sums, lane));
                 }
                 left &= left - 1;
             }
@@ -161,11 +191,15 @@ impl Gather<'_> {
     }
 
     #[inline(always)]
-    fn add(&self, [r, g, b, bounces]: [f32; 4], inner: bool, sums: &mut Sums, lane: usize) {
+    fn add(&self, [r, g, b, bounces]: [f32; 4], quantity: Quantity, inner: bool, (sums, lane): (&mut Sums, usize)) {
         if bounces.to_bits() > self.most_bounces {
             return;
         }
-        for (k, flux) in [r, g, b].into_iter().enumerate() {
+        let what = match quantity {
+            Quantity::Radiance => [r, g, b],
+            Quantity::Count => [bounces.to_bits() as f32, 1.0, 0.0],
+        };
+        for (k, flux) in what.into_iter().enumerate() {
             sums[k][lane] += f64::from(flux);
             if inner {
                 sums[3 + k][lane] += f64::from(flux);

@@ -1,4 +1,5 @@
-//! A photon map: [`SUB_MAPS`] trees of photons, each an estimate of all the light.
+//! A photon map: [`SUB_MAPS`] sets of photons, each an estimate of all the light, and each a tree; or, where no more trees
+//! are asked, several sets in one.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,7 +15,7 @@ pub struct Map {
     pub round: u32,
     /// Where the light of all its photons went.
     pub account: Account,
-    /// The sub-maps.
+    /// The sub-maps, as many in each tree.
     pub trees: Vec<Tree>,
 }
 
@@ -22,9 +23,9 @@ impl Map {
     /// A map of these trees, in their order.
     ///
     /// # Panics
-    /// Unless there are [`SUB_MAPS`] of them.
+    /// Unless their number divides [`SUB_MAPS`].
     pub fn new(kind: Kind, round: u32, trees: Vec<Tree>, account: Account) -> Self {
-        assert_eq!(trees.len(), SUB_MAPS as usize);
+        assert!((SUB_MAPS as usize).is_multiple_of(trees.len()));
         Self { kind, round, account, trees }
     }
 

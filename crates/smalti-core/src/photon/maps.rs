@@ -58,6 +58,12 @@ impl Maps {
         layers + self.visibility.as_ref().map_or(0, |visibility| visibility.bytes())
     }
 
+    /// How far photons count, the least and the most, in the frame; `None` without a map.
+    pub fn radii(&self) -> Option<[f32; 2]> {
+        let radii = self.layers().map(|layer| layer.pilot.radii().map(|radius| radius * self.shrink));
+        radii.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+    }
+
     /// What was sent ahead, for the maps of another round.
     pub fn pilots(&self) -> Pilots {
         let of = |layer: &Option<Layer>| layer.as_ref().map(|layer| layer.pilot.clone());
@@ -151,7 +157,8 @@ impl Renderer {
     fn pilot(&self, pass: &Pass, radius: Option<f32>, progress: &AtomicU64) -> Pilot {
         let ahead = Pass { photons: pilot::PHOTONS, ..pass.clone() };
         let (photons, _) = collected(self.traced(&ahead, ahead.batches(AHEAD), progress));
-        Pilot::new(Tree::new(&photons), (pilot::PHOTONS, pass.of_sub_map()), radius)
+        let pilot = Pilot::new(Tree::new(&photons), (pilot::PHOTONS, pass.of_sub_map()), radius);
+        if self.plan().shows() && radius.is_none() { pilot.gradual((pilot::PHOTONS, pass.photons)) } else { pilot }
     }
 
     fn visibility(&self, pass: &Pass, progress: &AtomicU64) -> Visibility {
@@ -159,16 +166,19 @@ impl Renderer {
         Visibility::new(Tree::new(&photons))
     }
 
-    /// One sub-map after the other becomes a tree, so that little more is held than the trees.
+    /// One tree is built after the other, so that little more is held than the trees.
     fn map(&self, pass: &Pass, round: u32, progress: &AtomicU64) -> Map {
-        let sub_map = |number: u32| {
-            let (photons, account) = collected(self.traced(pass, pass.sub_map(round, number), progress));
+        let trees = self.plan().trees(self.settings());
+        let sub_maps = |tree: u32| tree * SUB_MAPS / trees..(tree + 1) * SUB_MAPS / trees;
+        let tree = |number: u32| {
+            let batches = sub_maps(number).flat_map(|sub_map| pass.sub_map(round, sub_map)).collect();
+            let (photons, account) = collected(self.traced(pass, batches, progress));
             (Tree::new(&photons), account)
         };
-        let (trees, accounts): (Vec<Tree>, Vec<Account>) = (0..SUB_MAPS).into_par_iter().map(sub_map).unzip();
+        let (built, accounts): (Vec<Tree>, Vec<Account>) = (0..trees).into_par_iter().map(tree).unzip();
         let mut account = Account::default();
-        accounts.iter().for_each(|of_sub_map| account += of_sub_map);
-        Map::new(pass.kind, round, trees, account)
+        accounts.iter().for_each(|of_tree| account += of_tree);
+        Map::new(pass.kind, round, built, account)
     }
 
     /// The batches, traced in parallel, in their order.
@@ -189,7 +199,8 @@ impl Renderer {
 /// The photons of some batches, in their order, and where their light went.
 fn collected(batches: Vec<Traced>) -> (Photons, Account) {
     let mut all = (Photons::default(), Account::default());
-    for traced in &batches {
+    all.0.reserve(batches.iter().map(|traced| traced.photons.len()).sum());
+    for traced in batches {
         all.0.append(&traced.photons);
         all.1 += &traced.account;
     }

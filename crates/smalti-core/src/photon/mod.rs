@@ -20,6 +20,7 @@ pub mod nearest;
 pub mod pass;
 pub mod pilot;
 pub mod shadow;
+pub mod show;
 pub mod store;
 pub mod surfaces;
 pub mod visibility;
@@ -30,6 +31,7 @@ pub use map::Map;
 pub use maps::Maps;
 pub use pass::{Batch, Traced};
 pub use pilot::Pilot;
+pub use show::{Quantity, Show};
 pub use surfaces::Surfaces;
 pub use visibility::Visibility;
 
@@ -74,6 +76,12 @@ impl Photons {
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.places.is_empty()
+    }
+
+    /// Makes room for so many more.
+    pub fn reserve(&mut self, more: usize) {
+        self.places.reserve(more);
+        self.flux.reserve(more);
     }
 
     /// Adds `more` behind.

@@ -11,6 +11,7 @@ pub use photons::Photons;
 use crate::accel::cones::Parts;
 use crate::accel::{Accel, occluders};
 use crate::light::table::Kind;
+use crate::photon::{Quantity, SUB_MAPS, Show, show};
 use crate::scene::{Class, Scene};
 use crate::settings::{Fresnel, Integrator, SamplerKind, Settings};
 use crate::stream::Columns;
@@ -44,6 +45,8 @@ pub enum Stage {
     Caustic,
     /// The map of all light at the second diffuse vertex, where the path ends.
     Gather,
+    /// A map at the first diffuse vertex, where the path ends: the map is what is to be seen.
+    Show(Show),
     /// The diffuse bounce.
     Diffuse,
     /// Reflection.
@@ -102,18 +105,56 @@ impl Plan {
     /// Settings under which part of the light could not be found.
     pub fn new(scene: &Scene, settings: &Settings) -> Result<Self, PlanError> {
         check(scene, settings)?;
-        let prims: Vec<u32> = (0..scene.shades.len() as u32).collect();
-        let everything = Accel::new(scene, &prims);
         let in_the_way = if samples_lights(scene, settings) { occluders::of(scene) } else { Vec::new() };
         let (occluders, parts) = (Accel::new(scene, &in_the_way), Parts::new(scene, &in_the_way));
         let photons = Photons::new(scene, settings, !in_the_way.is_empty());
         let stages = stages(scene, settings, photons.as_ref());
         let columns = columns(scene, settings, photons.as_ref());
-        let max_bounces = settings.max_bounces.unwrap_or(MOST_BOUNCES).min(MOST_BOUNCES);
-        let mut plan =
-            Self { stages, columns, max_bounces, everything, occluders, parts, photons, decisions: Vec::new() };
-        plan.decisions = reasons::of(&plan, scene, settings);
-        Ok(plan)
+        let plan = Self { columns, occluders, parts, photons, ..Self::of(scene, settings, stages) };
+        Ok(plan.reasoned(scene, settings))
+    }
+
+    /// Decides what it takes to see a photon map; of the settings the integrator and the light samples do not matter.
+    ///
+    /// # Errors
+    /// A scene in which that map is empty.
+    pub fn showing(scene: &Scene, settings: &Settings, show: Show) -> Result<Self, PlanError> {
+        let photons = Photons::showing(scene, settings, show.map).map_err(|message| PlanError { message })?;
+        let columns = Columns { eta: scene.has(Class::Dielectric), ..Columns::default() };
+        let stages = stages_that_show(scene, settings, show);
+        let plan = Self { columns, photons: Some(photons), ..Self::of(scene, settings, stages) };
+        Ok(plan.reasoned(scene, settings))
+    }
+
+    /// These stages alone, and what every plan has.
+    fn of(scene: &Scene, settings: &Settings, stages: Vec<Stage>) -> Self {
+        let prims: Vec<u32> = (0..scene.shades.len() as u32).collect();
+        Self {
+            stages,
+            columns: Columns::default(),
+            max_bounces: settings.max_bounces.unwrap_or(MOST_BOUNCES).min(MOST_BOUNCES),
+            everything: Accel::new(scene, &prims),
+            occluders: Accel::new(scene, &[]),
+            parts: Parts::new(scene, &[]),
+            photons: None,
+            decisions: Vec::new(),
+        }
+    }
+
+    /// The same with its reasons.
+    fn reasoned(mut self, scene: &Scene, settings: &Settings) -> Self {
+        self.decisions = reasons::of(&self, scene, settings);
+        self
+    }
+
+    /// Trees that a photon map is built of.
+    pub fn trees(&self, settings: &Settings) -> u32 {
+        if self.shows() { show::trees(settings.spp) } else { SUB_MAPS }
+    }
+
+    /// Whether a photon map is what is to be seen.
+    pub fn shows(&self) -> bool {
+        self.has(|stage| matches!(stage, Stage::Show(_)))
     }
 
     /// Whether some stage of the plan meets `test`.
@@ -160,6 +201,24 @@ fn stages(scene: &Scene, settings: &Settings, photons: Option<&Photons>) -> Vec<
         (Stage::Diffuse, lambert && path),
         (Stage::Mirror(ending), scene.has(Class::Mirror)),
         (glass, scene.has(Class::Dielectric)),
+    ]
+    .into_iter()
+    .filter_map(|(stage, needed)| needed.then_some(stage))
+    .collect()
+}
+
+/// Stages that show a photon map: those of camera paths up to the first diffuse vertex.
+fn stages_that_show(scene: &Scene, settings: &Settings, show: Show) -> Vec<Stage> {
+    let radiance = show.quantity == Quantity::Radiance;
+    [
+        (Stage::Intersect, true),
+        (Stage::Sort, true),
+        (Stage::Emission, radiance && !scene.lights.emitters.is_empty()),
+        (Stage::Environment, radiance && scene.environment.is_some()),
+        (Stage::Surface, true),
+        (Stage::Show(show), true),
+        (Stage::Mirror(Ending::Roulette(settings.sampler)), scene.has(Class::Mirror)),
+        (Stage::Dielectric(settings.fresnel, settings.sampler), scene.has(Class::Dielectric)),
     ]
     .into_iter()
     .filter_map(|(stage, needed)| needed.then_some(stage))

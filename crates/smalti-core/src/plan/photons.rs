@@ -39,26 +39,59 @@ impl Photons {
         let all = settings.integrator == Integrator::Photon;
         let in_map = if all { vec![1; scene.lights.emitters.len()] } else { hard_to_find(scene) };
         let caustic = caustic(scene, settings, &in_map);
-        let everywhere = Aim::everywhere(&scene.lights);
-        let global = (all && !everywhere.is_empty() && !lacks_sky(scene, settings)).then(|| Pass {
-            kind: Kind::Global,
-            aim: everywhere,
-            photons: settings.photons_of_round(),
-        });
+        let global =
+            (all && !lacks_sky(scene, settings)).then(|| global(scene, settings)).filter(|pass| !pass.aim.is_empty());
         (caustic.is_some() || global.is_some()).then(|| Self {
-            caustic,
+            in_map,
             // Shadow photons tell where shadow rays need not be asked: only where something may stop them.
-            shadow: (all && occluded).then(|| Pass {
-                kind: Kind::Shadow,
-                aim: Aim::everywhere(&scene.lights),
-                photons: visibility::PHOTONS,
-            }),
+            shadow: (all && occluded).then(|| shadow(scene)),
+            ..Self::of(scene, settings, caustic, global)
+        })
+    }
+
+    /// The one map that is to be seen, from all lights.
+    ///
+    /// # Errors
+    /// Why the map would be empty, and what can be done.
+    pub fn showing(scene: &Scene, settings: &Settings, map: Kind) -> Result<Self, String> {
+        if let Some(why) = nothing_to_show(scene, map) {
+            return Err(why.into());
+        }
+        let in_map = vec![1; scene.lights.emitters.len()];
+        match map {
+            Kind::Global | Kind::Shadow => Ok(Self::of(scene, settings, None, Some(global(scene, settings)))),
+            Kind::Caustic => match caustic(scene, settings, &in_map) {
+                Some(pass) => Ok(Self::of(scene, settings, Some(pass), None)),
+                None => Err("no light reaches what is specular, so there are no caustics to see".into()),
+            },
+        }
+    }
+
+    /// These passes, with what photons need to know of the scene.
+    fn of(scene: &Scene, settings: &Settings, caustic: Option<Pass>, global: Option<Pass>) -> Self {
+        Self {
+            caustic,
+            shadow: None,
             global,
             surfaces: Surfaces::new(scene),
-            in_map,
+            in_map: vec![1; scene.lights.emitters.len()],
             reference: reference(scene),
             radius: settings.radius.map(|radius| (radius * scene.frame.scale) as f32),
-        })
+        }
+    }
+}
+
+/// Why a map would be empty, and what can be done; `None` where it is not.
+fn nothing_to_show(scene: &Scene, map: Kind) -> Option<&'static str> {
+    let specular = scene.has(Class::Mirror) || scene.has(Class::Dielectric);
+    if scene.lights.rows.is_empty() {
+        Some("the scene has no light with a place, so there is nothing that photons could leave")
+    } else if !scene.has(Class::Lambert) {
+        Some("no surface is diffuse, and photons are stored on diffuse surfaces alone")
+    } else if map == Kind::Caustic && !specular {
+        Some("nothing in the scene is specular, so there are no caustics to see; `--map global` shows all light")
+    } else {
+        None
     }
 }
 
@@ -84,6 +117,11 @@ pub fn missing(scene: &Scene, settings: &Settings) -> &'static str {
     }
 }
 
+/// Shadow photons.
+fn shadow(scene: &Scene) -> Pass {
+    Pass { kind: Kind::Shadow, aim: Aim::everywhere(&scene.lights), photons: visibility::PHOTONS }
+}
+
 /// The caustic pass, where light can go from a light to a specular caster and on to a diffuse receiver.
 fn caustic(scene: &Scene, settings: &Settings, in_map: &[u32]) -> Option<Pass> {
     let specular = |prim: &u32| matches!(scene.class(*prim), Some(Class::Mirror | Class::Dielectric));
@@ -93,6 +131,11 @@ fn caustic(scene: &Scene, settings: &Settings, in_map: &[u32]) -> Option<Pass> {
         rows.map(|row| scene.lights.emitter_of(row).is_none_or(|emitter| in_map[emitter as usize] == 1)).collect();
     let aim = Aim::at(&scene.lights, Parts::new(scene, &casters).spheres(), &emits);
     (!aim.is_empty()).then(|| Pass { kind: Kind::Caustic, aim, photons: settings.photons_of_round() })
+}
+
+/// The pass of all light.
+fn global(scene: &Scene, settings: &Settings) -> Pass {
+    Pass { kind: Kind::Global, aim: Aim::everywhere(&scene.lights), photons: settings.photons_of_round() }
 }
 
 /// For each emitter 1 where chance hardly finds it, or finds it with much more than it finds in the mean.

@@ -143,6 +143,7 @@ fn stage_reason(stage: &Stage, scene: &Scene, settings: &Settings) -> Decision {
         }
         Stage::Caustic => ("caustic map", "light by way of specular surfaces, from photons".into()),
         Stage::Gather => ("final gather", "all light behind a diffuse bounce, from photons".into()),
+        Stage::Show(_) => ("photon map", "asked where the first diffuse surface is seen; the path ends there".into()),
         Stage::Diffuse => ("diffuse bounce", "indirect light by cosine-distributed rays".into()),
         Stage::Mirror(_) => ("mirror", of(Class::Mirror, "mirror")),
         Stage::Dielectric(..) => ("dielectric", of(Class::Dielectric, "dielectric")),

@@ -3,7 +3,7 @@
 //! [`caustic`] adds what came by way of specular surfaces, at every vertex; what the map holds is not found a second
 //! time: emission after a diffuse and then only specular bounces does not count for lights that are in the map (see
 //! [`emission`](super::emission)). [`last`] adds all light where a path ends at its second diffuse vertex (the final
-//! gather of Jensen's second pass).
+//! gather of Jensen's second pass). [`shown`] ends them at the first, so that the map itself is seen.
 //!
 //! Most vertices see little caustic light, and a query costs as much as a bounce. So a vertex asks with a chance in
 //! proportion to what it may expect, and counts accordingly more: unbiased whatever was expected, and as no contribution
@@ -15,6 +15,7 @@ use super::{DIRECTION, ORIGIN, PRIM, SLOT, Slots, Stream, THROUGHPUT};
 use crate::lanes::{Lanes, V3};
 use crate::photon::gather::{Gather, Query};
 use crate::photon::pilot::Pilot;
+use crate::photon::{Quantity, SUB_MAPS};
 use crate::sampling::{Purpose, pair};
 use crate::settings::SamplerKind;
 
@@ -93,6 +94,28 @@ pub fn last<L: Lanes>(
     answer(l, context, asking, slots);
 }
 
+/// Ends all paths at their vertices: adds what `quantity` says of the photons there. Each asks one of the map's `trees`,
+/// and what it says counts `factor` times.
+#[inline(always)]
+pub fn shown<L: Lanes>(
+    l: L,
+    context: &Context<'_>,
+    (quantity, trees, factor): (Quantity, u32, f32),
+    vertices: &Stream,
+    slots: &mut Slots,
+) {
+    for at in (0..vertices.len()).step_by(L::WIDTH) {
+        let asks = vertices.active(l, at);
+        let own = query(l, context, vertices, at, asks);
+        let query = Query { sub_map: l.shr_by(own.sub_map, (SUB_MAPS / trees).ilog2()), ..own };
+        let counts = match quantity {
+            Quantity::Radiance => counts(l, vertices, at).scale(l.f(factor)),
+            Quantity::Count => V3::splat(l, [factor; 3]),
+        };
+        slots.add(l, asks, vertices.u(l, SLOT, at), counts * context.gather.shown(l, &query, quantity));
+    }
+}
+
 /// What irradiance at the vertices of a packet counts for in their slots.
 #[inline(always)]
 fn counts<L: Lanes>(l: L, vertices: &Stream, at: usize) -> V3<L> {
@@ -112,18 +135,25 @@ fn ask<L: Lanes>(l: L, (vertices, at): (&Stream, usize), asks: L::M, counts: V3<
 #[inline(always)]
 fn answer<L: Lanes>(l: L, context: &Context<'_>, asking: &Stream, slots: &mut Slots) {
     for at in (0..asking.len()).step_by(L::WIDTH) {
-        let (slot, asks, point) = (asking.u(l, SLOT, at), asking.active(l, at), asking.v3(l, ORIGIN, at));
-        let query = Query {
-            point,
-            normal: asking.v3(l, DIRECTION, at),
-            prim: asking.u(l, PRIM, at),
-            asks,
-            // The upper bits are the number of the sample in its round, in some order.
-            sub_map: l.shr::<28>(slot),
-            radius: context.pilot.radius(l, point) * l.f(context.shrink),
-        };
+        let (slot, asks) = (asking.u(l, SLOT, at), asking.active(l, at));
+        let query = query(l, context, asking, at, asks);
         let (found, counts) = (context.gather.irradiance(l, &query), asking.v3(l, THROUGHPUT, at));
         slots.add(l, asks, slot, counts * found.irradiance);
         slots.add_shift(l, asks, slot, counts * (found.irradiance - found.inner));
+    }
+}
+
+/// A packet of vertices as the map sees it.
+#[inline(always)]
+fn query<L: Lanes>(l: L, context: &Context<'_>, vertices: &Stream, at: usize, asks: L::M) -> Query<L> {
+    let point = vertices.v3(l, ORIGIN, at);
+    Query {
+        point,
+        normal: vertices.v3(l, DIRECTION, at),
+        prim: vertices.u(l, PRIM, at),
+        asks,
+        // The upper bits are the number of the sample in its round, in some order.
+        sub_map: l.shr::<28>(vertices.u(l, SLOT, at)),
+        radius: context.pilot.radius(l, point) * l.f(context.shrink),
     }
 }
