@@ -10,6 +10,7 @@ mod interrupt;
 mod job;
 mod memory;
 mod names;
+mod outputs;
 mod parse;
 mod photon_map;
 mod print;

@@ -17,12 +17,12 @@ use crate::job::Job;
 use crate::photon_map::PhotonMap;
 use crate::print::{self, Messages};
 use crate::summary::{Developed, Summary, Work, develop, summary};
-use crate::{error_statement, memory, photon_map, provenance};
+use crate::{error_statement, memory, outputs, photon_map, provenance};
 
 /// Runs the command. `start` is when the process began.
 pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Failure> {
     let messages = Messages { json: args.progress == ProgressArg::Json };
-    let outputs = outputs(args)?;
+    let outputs = outputs::checked(&args.outputs, &args.scene, ".png")?;
     let mut job = Job::load(&args.scene, &args.image, args.work.simd.simd)?;
     let photon_map = args.photon_map.as_deref().map(|path| open_photon_map(path, &mut job)).transpose()?;
     job.notes.iter().for_each(|note| messages.note(note));
@@ -52,24 +52,6 @@ pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Fa
     Ok(status(args.strict, &outcome, &interrupt))
 }
 
-/// Files to write, each possible as far as can be told.
-fn outputs(args: &RenderArgs) -> Result<Vec<PathBuf>, Failure> {
-    let mut outputs = args.outputs.clone();
-    if outputs.is_empty() {
-        let no_name = || Failure::user(format!("{} is no scene file", args.scene.display()));
-        let mut name = args.scene.file_stem().ok_or_else(no_name)?.to_owned();
-        name.push(".png");
-        outputs.push(name.into());
-    }
-    for (index, path) in outputs.iter().enumerate() {
-        smalti_image::check_destination(path).map_err(Failure::user)?;
-        if outputs[..index].contains(path) {
-            return Err(Failure::user(format!("{} is named twice", path.display())));
-        }
-    }
-    Ok(outputs)
-}
-
 fn title(args: &RenderArgs, job: &Job, work: Work) -> Title {
     let area = job.settings.area();
     Title {
@@ -81,6 +63,7 @@ fn title(args: &RenderArgs, job: &Job, work: Work) -> Title {
         level: job.level.name(),
         setup: work.setup,
         exposure: job.exposure(args.exposure),
+        pictures: true,
     }
 }
 
@@ -110,7 +93,8 @@ fn perform(renderer: &Renderer, film: Film, workers: &Workers, mode: Mode, title
     outcome.map_err(Failure::bug)
 }
 
-fn interrupted(signal: i32, (least, most): (u32, u32), spp: u32) -> String {
+/// What became of a render that was stopped by a signal.
+pub(super) fn interrupted(signal: i32, (least, most): (u32, u32), spp: u32) -> String {
     let by = interrupt::name(signal);
     match (least, most) {
         (_, 0) => format!("interrupted by {by} before the first sample: nothing is written"),
@@ -123,16 +107,12 @@ fn interrupted(signal: i32, (least, most): (u32, u32), spp: u32) -> String {
 fn write(outputs: &[PathBuf], developed: &Developed, summary: &mut Summary, exposure: f32) -> Result<(), Failure> {
     let start = Instant::now();
     let provenance = provenance::of(summary);
-    let mut failures = Vec::new();
-    for path in outputs {
-        match smalti_image::write(path, &developed.image, &provenance, exposure) {
-            Ok(()) => summary.outputs.push(path.display().to_string()),
-            Err(error) => failures.push(error.to_string()),
-        }
-    }
+    let written = outputs::write_all(outputs, &mut summary.outputs, |path| {
+        smalti_image::write(path, &developed.image, &provenance, exposure)
+    });
     summary.write_seconds = start.elapsed().as_secs_f64();
     summary.peak_bytes = memory::peak_bytes();
-    if failures.is_empty() { Ok(()) } else { Err(Failure::output(failures.join("\n"))) }
+    written
 }
 
 /// Tells the user what came of it.
@@ -158,31 +138,7 @@ fn status(strict: bool, outcome: &Outcome, interrupt: &Interrupt) -> Status {
 
 #[cfg(test)]
 mod tests {
-    use clap::Parser;
-
     use super::*;
-    use crate::args::{Cli, Command};
-
-    fn typed(line: &str) -> RenderArgs {
-        match Cli::try_parse_from(line.split(' ')).unwrap().command {
-            Command::Render(args) => args,
-            other => panic!("{other:?}"),
-        }
-    }
-
-    #[test]
-    fn the_default_output_has_the_scenes_name_and_lies_here() {
-        assert_eq!(outputs(&typed("smalti render far/away/room.v2.toml")), Ok(vec!["room.v2.png".into()]));
-        assert!(outputs(&typed("smalti render ..")).is_err());
-    }
-
-    #[test]
-    fn outputs_are_checked() {
-        let message = |line: &str| outputs(&typed(line)).unwrap_err().message;
-        assert!(message("smalti render a.toml -o a.pgn").contains(".png"));
-        assert!(message("smalti render a.toml -o no/such/folder/a.png").contains("no/such/folder"));
-        assert!(message("smalti render a.toml -o a.png -o a.png").contains("twice"));
-    }
 
     #[test]
     fn interruptions_say_how_far_it_came() {

@@ -49,6 +49,11 @@ impl<S: Surface> Bars<S> {
         Self { title, look, picture: None, surface, drawn: None }
     }
 
+    /// The picture so far, where it is to be seen.
+    fn picture(&self) -> Option<&Picture> {
+        self.picture.as_ref().filter(|_| self.title.pictures)
+    }
+
     /// The size of the surface now.
     fn measure(&self) -> Size {
         self.surface.measure();
@@ -80,7 +85,7 @@ impl<S: Surface> Bars<S> {
 
     fn draw(&mut self, tally: &Tally) {
         let size = self.measure();
-        let Frame { above, text, below } = frame::live(&self.title, tally, self.picture.as_ref(), self.look, size);
+        let Frame { above, text, below } = frame::live(&self.title, tally, self.picture(), self.look, size);
         let style = style(!above.is_empty(), below, self.look.palette);
         let lines = above.len() + if below { 2 } else { 1 };
         let drawn = self.bar(Shape { size, lines }, tally.total);
@@ -96,7 +101,7 @@ impl<S: Surface> Bars<S> {
             Some(drawn) => self.wipe(&drawn, size),
             None => {}
         }
-        for line in frame::last(&self.title, tally, self.picture.as_ref(), self.look, size) {
+        for line in frame::last(&self.title, tally, self.picture(), self.look, size) {
             let _ = self.surface.write_line(&line);
         }
         let _ = self.surface.flush();

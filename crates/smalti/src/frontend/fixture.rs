@@ -25,6 +25,7 @@ pub fn title() -> Title {
         level: "avx2",
         setup: Duration::from_millis(120),
         exposure: 0.0,
+        pictures: true,
     }
 }
 

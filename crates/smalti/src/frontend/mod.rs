@@ -88,6 +88,8 @@ pub struct Title {
     pub setup: Duration,
     /// Brightness of the picture so far, stops.
     pub exposure: f32,
+    /// Whether the picture so far is one before it is done: false colours are not.
+    pub pictures: bool,
 }
 
 /// The thread that shows. Whoever drops it without [`Display::finish`] no longer waits for it.
@@ -111,6 +113,7 @@ pub fn start(mode: Mode, title: Title) -> (Display, Option<Watch>) {
         return (Display(None), None);
     }
     let (sender, events) = unbounded();
+    let pictures = title.pictures && matches!(mode, Mode::Bar(_));
     let show = move || match mode {
         Mode::Bar(palette) => run(&events, &mut Bars::on_stderr(title, palette)),
         Mode::Plain => run(&events, &mut Plain::new(title, stderr())),
@@ -118,9 +121,7 @@ pub fn start(mode: Mode, title: Title) -> (Display, Option<Watch>) {
         Mode::None => {}
     };
     match thread::Builder::new().name("frontend".into()).spawn(show) {
-        Ok(thread) => {
-            (Display(Some(thread)), Some(Watch { pictures: matches!(mode, Mode::Bar(_)), ..Watch::new(sender) }))
-        }
+        Ok(thread) => (Display(Some(thread)), Some(Watch { pictures, ..Watch::new(sender) })),
         // No thread, no display; the render is what counts.
         Err(_) => (Display(None), None),
     }

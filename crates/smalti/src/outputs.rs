@@ -1,0 +1,65 @@
+//! The image files that a command writes: named and checked before it begins, written one after the other at its end.
+
+use std::path::{Path, PathBuf};
+
+use smalti_image::WriteError;
+
+use crate::exit::Failure;
+
+/// Files to write, each possible as far as can be told; unless some were typed, the name of the scene with `ending`, here.
+pub fn checked(typed: &[PathBuf], scene: &Path, ending: &str) -> Result<Vec<PathBuf>, Failure> {
+    let mut outputs = typed.to_vec();
+    if outputs.is_empty() {
+        let no_name = || Failure::user(format!("{} is no scene file", scene.display()));
+        let mut name = scene.file_stem().ok_or_else(no_name)?.to_owned();
+        name.push(ending);
+        outputs.push(name.into());
+    }
+    for (index, path) in outputs.iter().enumerate() {
+        smalti_image::check_destination(path).map_err(Failure::user)?;
+        if outputs[..index].contains(path) {
+            return Err(Failure::user(format!("{} is named twice", path.display())));
+        }
+    }
+    Ok(outputs)
+}
+
+/// Writes every file that can be written and adds its name to `written`; an error names the others.
+pub fn write_all(
+    outputs: &[PathBuf],
+    written: &mut Vec<String>,
+    write: impl Fn(&Path) -> Result<(), WriteError>,
+) -> Result<(), Failure> {
+    let mut failures = Vec::new();
+    for path in outputs {
+        match write(path) {
+            Ok(()) => written.push(path.display().to_string()),
+            Err(error) => failures.push(error.to_string()),
+        }
+    }
+    if failures.is_empty() { Ok(()) } else { Err(Failure::output(failures.join("\n"))) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_default_output_has_the_scenes_name_and_lies_here() {
+        let named = |scene: &str, ending| checked(&[], Path::new(scene), ending);
+        assert_eq!(named("far/away/room.v2.toml", ".png"), Ok(vec!["room.v2.png".into()]));
+        assert_eq!(named("far/away/room.toml", "-photons.png"), Ok(vec!["room-photons.png".into()]));
+        assert!(named("..", ".png").is_err());
+    }
+
+    #[test]
+    fn outputs_are_checked() {
+        let message = |typed: &[&str]| {
+            let typed: Vec<PathBuf> = typed.iter().map(PathBuf::from).collect();
+            checked(&typed, Path::new("a.toml"), ".png").unwrap_err().message
+        };
+        assert!(message(&["a.pgn"]).contains(".png"));
+        assert!(message(&["no/such/folder/a.png"]).contains("no/such/folder"));
+        assert!(message(&["a.png", "a.png"]).contains("twice"));
+    }
+}
