@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use smalti_core::photon::SUB_MAPS;
 use smalti_core::settings::{MOST_PHOTONS, MOST_SHADOW_RAYS, Rect};
 
-use crate::names::{FresnelArg, IntegratorArg, SamplerArg, SimdArg};
+use crate::names::{ColourArg, FresnelArg, IntegratorArg, MapArg, SamplerArg, SimdArg};
 use crate::parse::{Size, parse_crop, parse_finite, parse_length, parse_size, parse_threads, parse_threshold};
 
 /// A physically based CPU renderer for people who work in a terminal.
@@ -44,6 +45,8 @@ pub enum Command {
     Compare(CompareArgs),
     /// Replay one pixel, or one sample of it bounce by bounce
     Pixel(PixelArgs),
+    /// Make a scene's photon map visible
+    Photons(PhotonsArgs),
 }
 
 /// Arguments of `smalti render`.
@@ -252,6 +255,83 @@ pub struct PixelArgs {
     #[command(flatten)]
     pub image: ImageArgs,
 }
+
+/// Arguments of `smalti photons`.
+#[derive(Debug, Args)]
+#[command(after_help = PHOTONS_EXAMPLES)]
+pub struct PhotonsArgs {
+    /// Scene file (TOML)
+    pub scene: PathBuf,
+    /// Image file: .png, .exr, .pfm or .hdr; may be repeated [default: the scene's name with -photons.png, here]
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub outputs: Vec<PathBuf>,
+    /// Brightness of PNG files in stops: every step doubles it; false colours do not change
+    #[arg(long, value_name = "EV", value_parser = parse_finite, allow_negative_numbers = true)]
+    pub exposure: Option<f64>,
+    /// Worker threads; 0: one for each logical core
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=MAX_THREADS))]
+    pub threads: u32,
+    #[command(flatten)]
+    pub work: WorkArgs,
+    /// How progress is shown on stderr
+    #[arg(long, value_name = "HOW", default_value = "auto")]
+    pub progress: ProgressArg,
+    /// No progress and no summary; errors and warnings only
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// Print the summary as one JSON object on stdout
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub image: PhotonImageArgs,
+}
+
+/// Flags that change the picture of a photon map.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Image")]
+pub struct PhotonImageArgs {
+    /// Photons that are emitted in all [default: a million for each light]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_PHOTONS)))]
+    pub photons: Option<u32>,
+    /// Which map [default: caustic where something is specular, else global]
+    #[arg(long, value_name = "NAME")]
+    pub map: Option<MapArg>,
+    /// What the colours tell of the photons
+    #[arg(long, value_name = "WHAT", default_value = "flux")]
+    pub colour: ColourArg,
+    /// How far photons count, metres [default: by their density]
+    #[arg(long, value_name = "R", value_parser = parse_length)]
+    pub radius: Option<f64>,
+    /// Samples (camera paths) for each pixel
+    #[arg(long, value_name = "N", default_value_t = 4,
+          value_parser = clap::value_parser!(u32).range(1..=i64::from(SUB_MAPS)))]
+    pub spp: u32,
+    /// Another seed is another realisation of the noise
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// Size of the whole image in pixels
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    pub size: Option<Size>,
+    /// Show only this part of the image: column and row of its top left pixel, width, height
+    #[arg(long, value_name = "X,Y,W,H", value_parser = parse_crop)]
+    pub crop: Option<Rect>,
+    /// Which of the scene's cameras
+    #[arg(long, value_name = "NAME")]
+    pub camera: Option<String>,
+    /// Reflectance of dielectrics
+    #[arg(long, value_name = "NAME")]
+    pub fresnel: Option<FresnelArg>,
+}
+
+const PHOTONS_EXAMPLES: &str = "\
+Examples:
+  smalti photons scenes/hexroom-points.toml --exposure 4       caustics of two glass balls, 3 million photons
+  smalti photons room.toml --map global --colour density       where photons lie dense, in false colours
+  smalti photons room.toml -o map.exr --photons 100000 --json  for a script
+
+Of the scene's [render] table size, crop, seed, camera, fresnel, exposure and tile count. With false colours a PNG file has
+the colours; other formats hold the figures themselves, the same in every channel. Threads, tile size and SIMD level
+change no bit of the image.";
 
 /// When to use colours.
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]

@@ -44,7 +44,7 @@ impl Job {
         let loaded = smalti_scene::load(scene).map_err(|error| Failure::scene(&error))?;
         let settings = merge(loaded.settings.settings(), flags, &loaded.world)?;
         check_area(&settings)?;
-        check_memory(&settings, memory::total_bytes())?;
+        check_memory(&settings, memory::photon_bytes(&settings), memory::total_bytes())?;
         Ok(Self {
             path: scene.to_owned(),
             world: loaded.world,
@@ -148,10 +148,9 @@ fn check_area(settings: &Settings) -> Result<(), Failure> {
     )))
 }
 
-/// A film that the machine cannot hold is refused before it is allocated.
-fn check_memory(settings: &Settings, available: Option<u64>) -> Result<(), Failure> {
+/// A film that the machine cannot hold beside `photons` bytes of photon maps is refused before it is allocated.
+pub fn check_memory(settings: &Settings, photons: u64, available: Option<u64>) -> Result<(), Failure> {
     let area = settings.area();
-    let photons = memory::photon_bytes(settings);
     let limit = available.unwrap_or(isize::MAX as u64).min(isize::MAX as u64);
     let needed = memory::film_bytes(area);
     if needed.is_some_and(|bytes| bytes <= limit.saturating_sub(photons)) {
@@ -261,10 +260,10 @@ mod tests {
     #[test]
     fn absurd_sizes_are_refused_with_a_number() {
         let sized = |width, height| Settings { width, height, ..Settings::default() };
-        assert_eq!(check_memory(&sized(100, 100), Some(840_000)), Ok(()));
-        let message = check_memory(&sized(100_000, 100_000), Some(16_000_000_000)).unwrap_err().message;
+        assert_eq!(check_memory(&sized(100, 100), 0, Some(840_000)), Ok(()));
+        let message = check_memory(&sized(100_000, 100_000), 0, Some(16_000_000_000)).unwrap_err().message;
         assert!(message.contains("840 GB") && message.contains("16 GB"), "{message}");
-        assert!(check_memory(&sized(u32::MAX, u32::MAX), None).is_err());
+        assert!(check_memory(&sized(u32::MAX, u32::MAX), 0, None).is_err());
     }
 
     #[test]

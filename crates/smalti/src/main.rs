@@ -13,6 +13,7 @@ mod names;
 mod outputs;
 mod parse;
 mod photon_map;
+mod photons;
 mod print;
 mod provenance;
 mod record;

@@ -1,7 +1,7 @@
 //! Memory: what a film takes, what the machine has, what this process used.
 
 use smalti_core::film::Pixel;
-use smalti_core::photon::Photons;
+use smalti_core::photon::{Kind, Photons};
 use smalti_core::settings::{Integrator, Rect, Settings};
 
 /// Bytes that a render of `area` takes at least: the film and the linear image. `None`: more than can be counted.
@@ -19,6 +19,16 @@ pub fn photon_bytes(settings: &Settings) -> u64 {
         Integrator::Path | Integrator::Whitted => return 0,
     };
     u64::from(settings.photons_of_round()) * maps * stored * 2 * Photons::BYTES
+}
+
+/// Bytes that a map of `photons` emitted ones may take at most while it is built.
+pub fn map_bytes(map: Kind, photons: u32) -> u64 {
+    let stored = match map {
+        Kind::Caustic => 1,
+        // A photon is stored at every diffuse bounce.
+        Kind::Global => 6,
+    };
+    u64::from(photons) * stored * 2 * Photons::BYTES
 }
 
 /// The machine's memory in bytes, where the system tells (Linux).

@@ -1,6 +1,7 @@
 //! Names that users write on the command line, and what they stand for in the core.
 
 use clap::ValueEnum;
+use smalti_core::photon::{Kind, Quantity};
 use smalti_core::render::Level;
 use smalti_core::settings::{Fresnel, Integrator, SamplerKind};
 
@@ -56,6 +57,64 @@ impl From<FresnelArg> for Fresnel {
     }
 }
 
+/// Names of photon maps.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+pub enum MapArg {
+    /// Light that came by way of specular surfaces
+    Caustic,
+    /// All light
+    Global,
+}
+
+impl MapArg {
+    /// The name that users write.
+    pub fn name(self) -> &'static str {
+        match self {
+            MapArg::Caustic => "caustic",
+            MapArg::Global => "global",
+        }
+    }
+}
+
+impl From<MapArg> for Kind {
+    fn from(typed: MapArg) -> Self {
+        match typed {
+            MapArg::Caustic => Kind::Caustic,
+            MapArg::Global => Kind::Global,
+        }
+    }
+}
+
+/// What is shown of photons.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+pub enum ColourArg {
+    /// Radiance that diffuse surfaces send back by the map alone
+    Flux,
+    /// Photons by square metre, in false colours
+    Density,
+    /// Scattering events before a photon was stored, in false colours
+    Bounces,
+}
+
+impl ColourArg {
+    /// The name that users write.
+    pub fn name(self) -> &'static str {
+        match self {
+            ColourArg::Flux => "flux",
+            ColourArg::Density => "density",
+            ColourArg::Bounces => "bounces",
+        }
+    }
+
+    /// What the core is to find out for it.
+    pub fn quantity(self) -> Quantity {
+        match self {
+            ColourArg::Flux => Quantity::Radiance,
+            ColourArg::Density | ColourArg::Bounces => Quantity::Count,
+        }
+    }
+}
+
 /// Names of SIMD levels.
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 pub enum SimdArg {
@@ -93,6 +152,12 @@ mod tests {
         for level in SimdArg::value_variants() {
             let typed = level.to_possible_value().unwrap();
             assert_eq!(typed.get_name(), level.level().map_or("auto", Level::name));
+        }
+        for name in MapArg::value_variants() {
+            assert_eq!(name.to_possible_value().unwrap().get_name(), name.name());
+        }
+        for name in ColourArg::value_variants() {
+            assert_eq!(name.to_possible_value().unwrap().get_name(), name.name());
         }
         for name in IntegratorArg::value_variants() {
             assert_eq!(name.to_possible_value().unwrap().get_name(), Integrator::from(*name).name());

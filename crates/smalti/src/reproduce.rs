@@ -16,6 +16,26 @@ pub fn replay_command(scene: &Path, settings: &Settings, camera: &str, pixel: (u
     format!("smalti pixel {} {} {} --sample {sample}{flags}", scene_argument(scene), pixel.0, pixel.1)
 }
 
+/// A command that shows the same photon map again; `map` and `colour` are the names that users write.
+pub fn photons_command(scene: &Path, settings: &Settings, (map, colour): (&str, &str), camera: &str) -> String {
+    let Settings { width, height, spp, seed, fresnel, .. } = settings;
+    let (photons, fresnel) = (settings.photons_of_round(), fresnel.name());
+    let mut command = format!(
+        "smalti photons {} --photons {photons} --map {map} --colour {colour} --size {width}x{height} --spp {spp} \
+         --seed {seed} --fresnel {fresnel}",
+        scene_argument(scene)
+    );
+    command += &settings.radius.map(|radius| format!(" --radius {radius}")).unwrap_or_default();
+    command + &part(settings, camera)
+}
+
+/// Crop and camera as flags.
+fn part(settings: &Settings, camera: &str) -> String {
+    let crop = settings.crop.map(|Rect { x, y, width, height }| format!(" --crop {x},{y},{width},{height}"));
+    let camera = (!camera.is_empty()).then(|| format!(" --camera={}", quoted(camera)));
+    crop.unwrap_or_default() + &camera.unwrap_or_default()
+}
+
 /// Every setting as a flag; those that a scene cannot have set either are left out.
 fn flags(settings: &Settings, spp: u32, camera: &str) -> String {
     let Settings { integrator, width, height, shadow_rays, sampler, seed, fresnel, .. } = settings;
@@ -27,12 +47,7 @@ fn flags(settings: &Settings, spp: u32, camera: &str) -> String {
     if let Some(bounces) = settings.max_bounces {
         flags += &format!(" --max-bounces {bounces}");
     }
-    if let Some(Rect { x, y, width, height }) = settings.crop {
-        flags += &format!(" --crop {x},{y},{width},{height}");
-    }
-    if !camera.is_empty() {
-        flags += &format!(" --camera={}", quoted(camera));
-    }
+    flags += &part(settings, camera);
     if settings.integrator.asks_photons() {
         flags += &format!(" --photons {}", settings.photons_of_round());
         flags += &settings.radius.map(|radius| format!(" --radius {radius}")).unwrap_or_default();

@@ -2,6 +2,7 @@
 
 mod compare;
 mod explain;
+mod photons;
 mod pixel;
 mod render;
 mod scaling;
@@ -23,6 +24,7 @@ pub fn run(cli: &Cli, start: Instant) -> ExitCode {
         Command::Scaling(args) => scaling::run(args),
         Command::Compare(args) => compare::run(args),
         Command::Pixel(args) => pixel::run(args),
+        Command::Photons(args) => photons::run(args, cli.color, start),
     };
     match ended {
         Ok(status) => status.into(),
@@ -35,5 +37,9 @@ pub fn run(cli: &Cli, start: Instant) -> ExitCode {
 
 /// With `--progress json` stderr holds JSON lines only.
 fn wants_json_lines(command: &Command) -> bool {
-    matches!(command, Command::Render(args) if args.progress == ProgressArg::Json)
+    match command {
+        Command::Render(args) => args.progress == ProgressArg::Json,
+        Command::Photons(args) => args.progress == ProgressArg::Json,
+        _ => false,
+    }
 }
