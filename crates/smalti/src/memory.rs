@@ -24,7 +24,7 @@ pub fn photon_bytes(settings: &Settings) -> u64 {
 /// Bytes that a map of `photons` emitted ones may take at most while it is built.
 pub fn map_bytes(map: Kind, photons: u32) -> u64 {
     let stored = match map {
-        Kind::Caustic => 1,
+        Kind::Caustic | Kind::Shadow => 1,
         // A photon is stored at every diffuse bounce.
         Kind::Global => 6,
     };

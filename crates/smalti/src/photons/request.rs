@@ -66,6 +66,7 @@ impl Request {
         match self.map.into() {
             Kind::Caustic => "caustic map",
             Kind::Global => "map of all light",
+            Kind::Shadow => "shadow photons",
         }
     }
 }
