@@ -290,7 +290,7 @@ pub struct PhotonsArgs {
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Image")]
 pub struct PhotonImageArgs {
-    /// Photons that are emitted in all [default: a million for each light]
+    /// Photons that are emitted in all [default: a million for each light, 4 at most; with --map global 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_PHOTONS)))]
     pub photons: Option<u32>,
     /// Which map [default: caustic where something is specular, else global]

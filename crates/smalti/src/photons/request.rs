@@ -16,8 +16,8 @@ use crate::names::{ColourArg, IntegratorArg, MapArg};
 /// Photons for each light where nothing is said, as in the report.
 const PHOTONS_OF_LIGHT: u32 = 1_000_000;
 
-/// More photons than this in all must be asked for.
-const MOST_UNASKED: u32 = 4_000_000;
+/// More photons than this in all must be asked for: for caustics, and of all light, where each is stored several times.
+const MOST_UNASKED: [u32; 2] = [4_000_000, 1_000_000];
 
 /// What is to be shown, checked.
 #[derive(Debug)]
@@ -48,7 +48,8 @@ impl Request {
         let lights = Lights::of(&job.world);
         let usual = if has_casters(&job.world) { MapArg::Caustic } else { MapArg::Global };
         let map = args.image.map.unwrap_or(usual);
-        job.settings = settings(&job.settings, &args.image, lights);
+        let photons = args.image.photons.unwrap_or_else(|| lights.photons(map.into()));
+        job.settings = settings(&job.settings, &args.image, photons);
         let bytes = memory::map_bytes(map.into(), job.settings.photons_of_round());
         check_memory(&job.settings, bytes, memory::total_bytes())?;
         Ok(Self { job, map, colour: args.image.colour, lights })
@@ -80,9 +81,9 @@ impl Lights {
     }
 
     /// Photons in all where nothing is said.
-    fn photons(self) -> u32 {
+    fn photons(self, map: Kind) -> u32 {
         let lights = u32::try_from(self.surfaces + self.points).unwrap_or(u32::MAX);
-        lights.max(1).saturating_mul(PHOTONS_OF_LIGHT).min(MOST_UNASKED)
+        lights.max(1).saturating_mul(PHOTONS_OF_LIGHT).min(MOST_UNASKED[map as usize])
     }
 }
 
@@ -101,7 +102,7 @@ fn flags(typed: &PhotonImageArgs) -> ImageArgs {
 }
 
 /// The settings of a photon map: what else the scene says is about a render.
-fn settings(scene: &Settings, typed: &PhotonImageArgs, lights: Lights) -> Settings {
+fn settings(scene: &Settings, typed: &PhotonImageArgs, photons: u32) -> Settings {
     Settings {
         integrator: Integrator::Photon,
         width: scene.width,
@@ -111,7 +112,7 @@ fn settings(scene: &Settings, typed: &PhotonImageArgs, lights: Lights) -> Settin
         seed: scene.seed,
         fresnel: scene.fresnel,
         camera: scene.camera,
-        photons: Some(typed.photons.unwrap_or_else(|| lights.photons())),
+        photons: Some(photons),
         radius: typed.radius,
         ..Settings::default()
     }
@@ -133,11 +134,12 @@ mod tests {
 
     #[test]
     fn every_light_has_a_million_photons_up_to_a_limit() {
-        let photons = |surfaces, points| Lights { surfaces, points }.photons();
+        let photons = |surfaces, points| Lights { surfaces, points }.photons(Kind::Caustic);
         assert_eq!(photons(0, 0), 1_000_000);
         assert_eq!(photons(1, 0), 1_000_000);
         assert_eq!(photons(1, 2), 3_000_000);
-        assert_eq!(photons(5000, usize::MAX - 5000), MOST_UNASKED);
+        assert_eq!(photons(5000, usize::MAX - 5000), 4_000_000);
+        assert_eq!(Lights { surfaces: 0, points: 3 }.photons(Kind::Global), 1_000_000);
     }
 
     #[test]
