@@ -14,7 +14,7 @@ out = tempfile.mkdtemp()
 p = argparse.ArgumentParser(); p.add_argument("cases", nargs="*"); p.add_argument("--runs", type=int, default=7); a = p.parse_args()
 
 def command(*flags):
-    return [smalti, "render", scene, "--size", "400x400", "--shadow-rays", "1", "--json", "-o", out + "/image.pfm", *map(str, flags)]
+    return [smalti, "render", scene, "--integrator", "path", "--size", "400x400", "--shadow-rays", "1", "--json", "-o", out + "/image.pfm", *map(str, flags)]
 
 def result(text): return json.loads(text)
 

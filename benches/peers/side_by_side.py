@@ -20,9 +20,10 @@ def run(command):
     if done.returncode: sys.exit(f"{' '.join(command)}\n{done.stderr}")
     return time.time() - begun, done.stdout
 
-def ours(scene, *flags, image="ours.pfm"):
-    wall, text = run([smalti, "render", os.path.join(root, "scenes", scene + ".toml"), "--json", "--progress", "none",
-                      "-o", os.path.join(out, image), *map(str, flags)])
+def ours(scene, *flags, image="ours.pfm", command="render", integrator="path"):
+    chosen = ["--integrator", integrator] if command == "render" else []
+    wall, text = run([smalti, command, os.path.join(root, "scenes", scene + ".toml"), "--json", "--progress", "none",
+                      "-o", os.path.join(out, image), *chosen, *map(str, flags)])
     return dict(json.loads(text), wall=wall)
 
 def mitsuba(*flags):
@@ -76,6 +77,27 @@ def memory():
     report("peak memory at 800 x 800, ours / theirs", [o["peak_bytes"] / 1048576 / m["peak_mb"] for o, m in p], "at most 0.5",
            f"ours {p[0][0]['peak_bytes']/1048576:.0f} MiB, theirs {p[0][1]['peak_mb']} MiB")
 
-cases = [paths, error, figure5, blob, start, memory]
+def whole(image):
+    return json.loads(run([smalti, "compare", image, a.reference, "--json"])[1])["relmse"]
+
+def auto():
+    ratios, notes = [], None
+    for _ in range(a.pairs):
+        o = ours("hexroom", "--size", "400x400", "--shadow-rays", 1, "--spp", 40, integrator="auto"); theirs = os.path.join(out, "theirs.exr")
+        m = mitsuba("--size", 400, "--spp", 64, "--reps", 1, "--out", theirs)
+        eo, em = whole(os.path.join(out, "ours.pfm")), whole(theirs)
+        ratios.append(em * m["seconds"] / (eo * o["wall"])); notes = f"ours {eo:.5f} in {o['wall']:.2f} s (by itself {o['error']['relmse']:.5f}), theirs {em:.4f} in {m['seconds']:.2f} s"
+    report("auto: relMSE x wall seconds, theirs / ours", ratios, "at least 100", notes)
+
+def photons():
+    p = pairs(lambda: (ours("hexroom-caustic", "--size", "800x800", "--photons", 3000000, command="photons"),
+                       ours("hexroom-caustic", "--size", "1x1", "--spp", 1, "--photons", 1000000, command="photons")),
+              lambda: mitsuba("--size", 800, "--spp", 4, "--reps", 3))
+    report("photons, 3 million, 800 x 800, whole command / their seconds for 4 spp", [o[0]["wall"] / m["seconds"] for o, m in p], "at most 0.75",
+           f"ours {statistics.median(o[0]['wall'] for o, _ in p):.2f} s, {p[0][0][0]['peak_bytes']/1048576:.0f} MiB")
+    report("a million caustic photons emitted, traced, built / their seconds for 4 spp", [o[1]["photon_seconds"] / m["seconds"] for o, m in p], "at most 0.22",
+           f"ours {statistics.median(o[1]['photon_seconds'] for o, _ in p):.3f} s")
+
+cases = [paths, error, figure5, blob, start, memory, auto, photons]
 for case in cases:
-    if (not a.cases or case.__name__ in a.cases) and (case is not error or a.reference): case()
+    if (not a.cases or case.__name__ in a.cases) and (case not in (error, auto) or a.reference): case()
