@@ -2,8 +2,8 @@
 """Measures smalti beside Mitsuba 3 in one run, pair by pair, and prints the ratios (medians).
 
 usage: side_by_side.py FOLDER [--reference hexroom_400.exr] [--pairs 5] [CASE ...]
-FOLDER is what setup.sh filled. Build first: cargo build --release. Cases: paths, error, figure5, blob, start, memory.
-`error` wants a converged 400 x 400 image of the room that neither renderer of the pair has made.
+FOLDER is what setup.sh filled. Build first: cargo build --release. Cases: paths, error, figure5, blob, start, memory, auto, photons.
+`error` and `auto` want a converged 400 x 400 image of the room that neither renderer of the pair has made.
 Nothing else should run on the machine.
 """
 import argparse, glob, json, os, resource, statistics, subprocess, sys, tempfile, time
