@@ -68,7 +68,8 @@ fn hanging_together(scene: &Scene, faces: &[u32]) -> Vec<Vec<[f32; 3]>> {
     groups.into_values().collect()
 }
 
-fn leader(leaders: &mut [u32], mut corner: u32) -> u32 {
+/// The lowest number of the group that a number is in; `leaders` points each to a lower one of its group, or to itself.
+pub(crate) fn leader(leaders: &mut [u32], mut corner: u32) -> u32 {
     while leaders[corner as usize] != corner {
         leaders[corner as usize] = leaders[leaders[corner as usize] as usize];
         corner = leaders[corner as usize];

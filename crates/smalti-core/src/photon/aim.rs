@@ -10,6 +10,7 @@ use glam::DVec3;
 
 use crate::lanes::{Lanes, V3};
 use crate::light::table::{Kind, LightTable};
+use crate::mutant::mutant;
 use crate::sampling::{discrete, warp};
 
 /// Most targets; what is nearest to each other is united until they are so few.
@@ -115,6 +116,10 @@ impl Aim {
             l.select(is_point, l.f(0.25 * core::f32::consts::FRAC_1_PI), warp::cosine_hemisphere_pdf(l, cosine));
         let count = self.targets.len() as u32;
         let first = l.mul_u(row, l.u(count));
+        // Report §2.8: photons go to the glass alone, with the flux of those that go everywhere.
+        if mutant!("photons_aimed_at_full_flux") {
+            return anywhere;
+        }
         let mut density = l.f(0.0);
         for number in 0..count {
             let target = self.targets[number as usize].map(

@@ -4,6 +4,7 @@ use super::Aim;
 use crate::geometry::offset;
 use crate::lanes::{Lanes, V3};
 use crate::light::table::{Kind, LightTable, triple};
+use crate::mutant::mutant;
 use crate::sampling::{Keys, Purpose, pair, sobol, warp};
 use crate::settings::SamplerKind;
 use crate::stream::{DIRECTION, KEY, LEAVES, ORIGIN, SLOT, Stream, THROUGHPUT};
@@ -59,7 +60,9 @@ pub fn run<L: Lanes>(
         let (direction, density) = aim.direction(l, (row, target), from, way);
         let cosine = l.select(source.is_point, l.f(1.0), source.normal.dot(l, direction));
         let brightest = source.radiance.max_component(l);
-        let measure = l.gather(&aim.measures, row) * l.f(1.0 / emitted as f32);
+        // Report eq. 14: each photon has a fixed flux, however many there are.
+        let share = if mutant!("eq14_flux_of_its_own") { 1e-4 } else { 1.0 / emitted as f32 };
+        let measure = l.gather(&aim.measures, row) * l.f(share);
         let flux = brightest * measure * cosine / density;
         l.store(flux, &mut power[at as usize..]);
         l.store_u(row, &mut rows[at as usize..]);

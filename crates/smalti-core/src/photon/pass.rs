@@ -7,6 +7,7 @@ use super::emit::{self, Emission};
 use super::visibility::HIDDEN;
 use super::{Account, Aim, Kind, Photons, SUB_MAPS, shadow, store};
 use crate::lanes::dispatch;
+use crate::mutant::mutant;
 use crate::render::Renderer;
 use crate::sampling::sampler::photon_key;
 use crate::scene::{Class, Scene};
@@ -155,7 +156,8 @@ impl Renderer {
         add(&mut account.escaped, sum(escaped, power));
         add(&mut account.absorbed, on_black(scene, photons, power));
         let landed = sum(diffuse, power);
-        if kind == Kind::Global || bounce > 0 {
+        // Report §2.8: "stored when their path terminates", those that come straight from the light too.
+        if kind == Kind::Global || bounce > 0 || mutant!("caustics_with_direct_light") {
             account.nonfinite +=
                 dispatch!(token, l => store::run(l, scene, &|_| bounce, diffuse, power, &mut traced.photons));
         }

@@ -9,6 +9,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::Tag;
+use crate::accel::cones::leader;
 use crate::lanes::math::disc_segment;
 use crate::lanes::{Lanes, V3};
 use crate::sampling::warp;
@@ -245,12 +246,4 @@ fn borders(scene: &Scene, prim: u32, edges: &HashMap<Edge, Vec<u32>>) -> Vec<[f3
         [inward.x as f32, inward.y as f32, inward.z as f32, offset as f32]
     };
     corner_pairs(scene, face).filter(|edge| !goes_on(edge)).map(border).collect()
-}
-
-fn leader(leaders: &mut [u32], mut prim: u32) -> u32 {
-    while leaders[prim as usize] != prim {
-        leaders[prim as usize] = leaders[leaders[prim as usize] as usize];
-        prim = leaders[prim as usize];
-    }
-    prim
 }
