@@ -66,7 +66,7 @@ fn assert_same(name: &str, a: &Repeated, b: &Repeated) {
     for c in 0..3 {
         let error = (a.standard_error[c] * a.standard_error[c] + b.standard_error[c] * b.standard_error[c]).sqrt();
         let off = a.mean[c] - b.mean[c];
-        assert!(error < 0.01 * b.mean[c], "{name}: known only to {:e}", error / b.mean[c]);
+        assert!(error < 0.02 * b.mean[c], "{name}: known only to {:e}", error / b.mean[c]);
         // A few seeds tell little of the spread: what a wrong normalisation does is a factor.
         assert!(off.abs() < 6.0 * error, "{name}: {} ± {error} off {} in channel {c}", off, b.mean[c]);
     }

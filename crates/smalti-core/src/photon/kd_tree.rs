@@ -2,7 +2,7 @@
 //! as deep as the number of photons demands, whatever their places.
 //!
 //! Nodes count from 1, and node k has the children 2k and 2k + 1. With m blocks the nodes below m split, and from m on
-//! they are blocks; all are full but one. A node splits the photons across their widest extent; of equal coordinates
+//! they are blocks; all are full but one. A node splits the photons across the longest side of its box; of equal coordinates
 //! the photon's number decides, so photons that share one coordinate, or all three, are no special case, and the tree
 //! is a function of the photons.
 
@@ -54,24 +54,29 @@ impl Tree {
             len: items.len(),
         };
         if count > 0 {
-            tree.fill(&mut items, (1, count), photons);
+            let bounds = bounds(&items);
+            tree.fill(&mut items, (1, count), bounds, photons);
         }
         tree
     }
 
-    /// Makes the subtree of `node`, which has so many leaves.
-    fn fill(&mut self, items: &mut [Item], (node, leaves): (usize, usize), photons: &Photons) {
+    /// Makes the subtree of `node`, which has so many leaves, of photons within `bounds`.
+    fn fill(&mut self, items: &mut [Item], (node, leaves): (usize, usize), bounds: Bounds, photons: &Photons) {
         if leaves == 1 {
             return self.put(node - self.blocks.len(), items, photons);
         }
-        let axis = widest(items);
+        let axis = widest(bounds);
         let left = left_leaves(leaves);
         let order = |a: &Item, b: &Item| a.place[axis].total_cmp(&b.place[axis]).then(a.number.cmp(&b.number));
         let (_, middle, _) = items.select_nth_unstable_by(left * BLOCK, order);
-        self.splits[node - 1] = [middle.place[axis], f32::from_bits(axis as u32)];
+        let split = middle.place[axis];
+        self.splits[node - 1] = [split, f32::from_bits(axis as u32)];
+        let (mut low, mut high) = (bounds, bounds);
+        low[1][axis] = split;
+        high[0][axis] = split;
         let (below, above) = items.split_at_mut(left * BLOCK);
-        self.fill(below, (2 * node, left), photons);
-        self.fill(above, (2 * node + 1, leaves - left), photons);
+        self.fill(below, (2 * node, left), low, photons);
+        self.fill(above, (2 * node + 1, leaves - left), high, photons);
     }
 
     fn put(&mut self, leaf: usize, items: &mut [Item], photons: &Photons) {
@@ -161,15 +166,19 @@ fn left_leaves(count: usize) -> usize {
     row / 2 + (count - row).min(row / 2)
 }
 
-/// The axis in which photons lie farthest apart; the first of equals.
-fn widest(items: &[Item]) -> usize {
-    let (mut low, mut high) = (items[0].place, items[0].place);
-    for Item { place, .. } in items {
-        for k in 0..3 {
-            low[k] = if place[k] < low[k] { place[k] } else { low[k] };
-            high[k] = if high[k] < place[k] { place[k] } else { high[k] };
-        }
-    }
+/// Low and high corner of a box.
+type Bounds = [[f32; 3]; 2];
+
+/// The box of some photons, at least one.
+fn bounds(items: &[Item]) -> Bounds {
+    let around = |[low, high]: Bounds, place: [f32; 3]| {
+        [[0, 1, 2].map(|k: usize| low[k].min(place[k])), [0, 1, 2].map(|k: usize| high[k].max(place[k]))]
+    };
+    items.iter().fold([items[0].place; 2], |so_far, item| around(so_far, item.place))
+}
+
+/// The longest side of a box; the first of equals.
+fn widest([low, high]: Bounds) -> usize {
     let extent = [0, 1, 2].map(|k: usize| high[k] - low[k]);
     if extent[0] >= extent[1] && extent[0] >= extent[2] {
         0
