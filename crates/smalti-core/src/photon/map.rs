@@ -43,11 +43,4 @@ impl Map {
     pub fn bytes(&self) -> u64 {
         self.trees.iter().map(Tree::bytes).sum()
     }
-
-    /// Place, tag and flux of each photon, in the order of the trees.
-    pub fn photons(&self) -> impl Iterator<Item = ([f32; 4], [f32; 4])> {
-        self.trees
-            .iter()
-            .flat_map(|tree| (0..tree.blocks.len() * super::kd_tree::BLOCK).filter_map(|at| tree.photon(at)))
-    }
 }

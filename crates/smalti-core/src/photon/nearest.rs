@@ -24,8 +24,7 @@ pub fn nearest(tree: &Tree, point: [f32; 3], count: usize, counts: impl Fn(u32) 
             continue;
         }
         for at in (node - leaves) * BLOCK..(node - leaves + 1) * BLOCK {
-            if let Some(([x, y, z, tag], _)) = tree.photon(at).filter(|(place, _)| counts(place[3].to_bits())) {
-                let _ = tag;
+            if let Some(([x, y, z, _], _)) = tree.photon(at).filter(|(place, _)| counts(place[3].to_bits())) {
                 let away = [x - point[0], y - point[1], z - point[2]];
                 insert(&mut found, (away.iter().map(|d| d * d).sum(), at), count);
             }

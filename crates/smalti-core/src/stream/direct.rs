@@ -16,7 +16,7 @@ use crate::accel::{Accel, Tracer};
 use crate::geometry::Ray;
 use crate::lanes::{Lanes, Rgb, V3};
 use crate::light::{sample::sample, table::LightTable};
-use crate::photon::visibility::ONE_IN;
+use crate::photon::visibility::{Decided, ONE_IN};
 use crate::photon::{Surfaces, Visibility};
 use crate::sampling::{Fan, Keys, Purpose, one_of};
 use crate::settings::Settings;
@@ -106,12 +106,20 @@ fn unstopped<L: Lanes>(
     cones.look_from(l, receiver.point);
     let nothing = V3::splat(l, [0.0; 3]);
     let mut sum = nothing;
+    let mut decided: Option<Decided<L>> = None;
     for number in 0..context.settings.shadow_rays {
         let Arriving { reach, mut irradiance, surface, counts, row } = receiver.sample(l, context, number);
         let mut doubt = counts & cones.may_stop(l, reach);
         sum = sum + V3::select(l, counts & !doubt, irradiance, nothing);
-        if context.decided.is_some() && l.any(doubt) {
-            let known = receiver.known(l, context, (number, row), doubt);
+        if let Some(photons) = context.decided
+            && l.any(doubt)
+        {
+            let here = match decided {
+                Some(here) => here,
+                None => receiver.decided(l, photons),
+            };
+            decided = Some(here);
+            let known = receiver.known(l, context, &here, (number, row), doubt);
             sum = sum + V3::select(l, known.seen, irradiance.scale(known.by_photons), nothing);
             irradiance = irradiance.scale(known.by_ray);
             *saved += u64::from(l.bitmask(doubt & !known.asks).count_ones());
@@ -200,17 +208,27 @@ impl<L: Lanes> Receiver<L> {
         }
     }
 
+    /// What shadow photons say of all lights.
+    #[inline(always)]
+    fn decided(&self, l: L, (visibility, surfaces): (&Visibility, &Surfaces)) -> Decided<L> {
+        let prim = l.select_u(self.active, self.prim, l.u(0));
+        visibility.at(l, surfaces, prim, (self.point, self.normal))
+    }
+
     /// What shadow photons say of light sample `number`, of light `row`, in the lanes `doubt`. Where they decide, one
     /// ray in [`ONE_IN`] is asked and counts as many times, less what the photons said.
     #[inline(always)]
-    fn known(&self, l: L, context: &Context<'_>, (number, row): (u32, L::U), doubt: L::M) -> Known<L> {
+    fn known(
+        &self,
+        l: L,
+        context: &Context<'_>,
+        decided: &Decided<L>,
+        (number, row): (u32, L::U),
+        doubt: L::M,
+    ) -> Known<L> {
         let one = l.f(1.0);
-        let Some((visibility, surfaces)) = context.decided else {
-            return Known { seen: l.m(false), by_photons: one, asks: doubt, by_ray: one };
-        };
         let Settings { sampler, shadow_rays, .. } = *context.settings;
-        let prim = l.select_u(self.active, self.prim, l.u(0));
-        let (seen, hidden) = visibility.at(l, surfaces, prim, (self.point, self.normal)).of(l, row);
+        let (seen, hidden) = decided.of(l, row);
         let known = doubt & (seen | hidden);
         let u = one_of(l, sampler, self.keys, self.bounce, Purpose::Verify, (number, shadow_rays));
         let verified = known & l.lt(u, l.f(1.0 / ONE_IN as f32));
