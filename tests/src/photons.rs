@@ -39,7 +39,7 @@ pub fn trace(renderer: &Renderer, pass: &Pass, count: u32, round: u32) -> Traced
 /// A map whose first part holds these photons, and whose others are empty.
 pub fn map_of(photons: &Photons) -> Map {
     let mut trees = vec![Tree::default(); SUB_MAPS as usize];
-    trees[0] = Tree::new(photons);
+    trees[0] = Tree::new([photons]);
     Map::new(Kind::Global, 0, trees, Account::default())
 }
 

@@ -77,7 +77,7 @@ fn listed(photons: impl Iterator<Item = ([f32; 4], [f32; 4])>) -> Vec<[u32; 8]> 
 fn every_photon_is_in_its_tree_once() {
     for (name, places) in sets() {
         let photons = photons(&places);
-        let tree = Tree::new(&photons);
+        let tree = Tree::new([&photons]);
         let in_tree = (0..tree.blocks.len() * BLOCK).filter_map(|number| tree.photon(number));
         let given = photons.places.iter().copied().zip(photons.flux.iter().copied());
         assert_eq!(tree.len, places.len(), "{name}");
@@ -102,7 +102,7 @@ fn looks(places: &[[f32; 3]], random: &mut Random) -> Vec<[f32; 3]> {
 fn the_nearest_photons_are_those_of_brute_force() {
     let mut random = Random::new(52);
     for (name, places) in sets() {
-        let tree = Tree::new(&photons(&places));
+        let tree = Tree::new([&photons(&places)]);
         for point in looks(&places, &mut random) {
             let outside = |tag: u32| Tag(tag).outside();
             let distance = |number: usize| {

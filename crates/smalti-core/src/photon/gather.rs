@@ -6,15 +6,16 @@
 //! through thin walls or around corners.
 //!
 //! A packet of points walks down a tree together, lane by lane; a point that comes to a leaf looks at all photons of the
-//! leaf at once. What counts is added photon by photon, in the order of the tree: no width can change a bit.
+//! leaf at once. What counts is added photon by photon, in the order of the tree: no width can change a bit. (Where a map
+//! itself is seen, all points of a packet look together: [`view`](super::view).)
 
 use super::kd_tree::{BLOCK, Tree};
 use super::surfaces::Group;
-use super::{Map, Quantity, Surfaces, Tag};
+use super::{Map, Surfaces, Tag};
 use crate::lanes::{Lanes, Rgb, V3};
 
 /// Photons this much of the radius above or below the disc do not count.
-const FLAT: f32 = 0.25;
+pub const FLAT: f32 = 0.25;
 
 /// Points that ask a map.
 pub struct Query<L: Lanes> {
@@ -30,6 +31,17 @@ pub struct Query<L: Lanes> {
     pub sub_map: L::U,
     /// How far photons count.
     pub radius: L::F,
+}
+
+impl<L: Lanes> Query<L> {
+    /// The surfaces that the points lie on, and the tags of photons on their own primitives and sides.
+    #[inline(always)]
+    pub fn surface(&self, l: L, surfaces: &Surfaces) -> (Group<L>, L::U) {
+        let prim = l.select_u(self.asks, self.prim, l.u(0));
+        let group = surfaces.group(l, prim);
+        let outside = surfaces.is_outside(l, &group, (self.point, self.normal));
+        (group, prim | l.select_u(outside, l.u(Tag::OUTSIDE), l.u(0)))
+    }
 }
 
 /// What was found.
@@ -59,8 +71,7 @@ impl Gather<'_> {
     /// Irradiance at the points of a packet.
     #[inline(always)]
     pub fn irradiance<L: Lanes>(&self, l: L, query: &Query<L>) -> Found<L> {
-        let [r, g, b, inner_r, inner_g, inner_b] =
-            &self.sums(l, query, Quantity::Radiance).map(|sums| sums.map(|sum| sum as f32));
+        let [r, g, b, inner_r, inner_g, inner_b] = &self.sums(l, query).map(|sums| sums.map(|sum| sum as f32));
         let irradiance = V3::new(l.load(r), l.load(g), l.load(b));
         let found = Found { irradiance, inner: V3::new(l.load(inner_r), l.load(inner_g), l.load(inner_b)) };
         let something = query.asks & l.lt(l.f(0.0), found.irradiance.max_component(l));
@@ -77,22 +88,9 @@ impl Gather<'_> {
         Found { irradiance: found.irradiance.scale(by / whole), inner: found.inner.scale(by / half) }
     }
 
-    /// What `quantity` says of the photons at the points of a packet, by area.
-    #[inline(always)]
-    pub fn shown<L: Lanes>(&self, l: L, query: &Query<L>, quantity: Quantity) -> Rgb<L> {
-        let [x, y, z, ..] = &self.sums(l, query, quantity).map(|sums| sums.map(|sum| sum as f32));
-        let found = V3::new(l.load(x), l.load(y), l.load(z));
-        let something = query.asks & l.lt(l.f(0.0), found.max_component(l));
-        if !l.any(something) {
-            return found;
-        }
-        let part = self.surfaces.part_of_disc(l, something, query.prim, query.point, query.radius);
-        found.scale(l.f(core::f32::consts::FRAC_1_PI) / (query.radius * query.radius * part))
-    }
-
     /// Sums for every lane.
     #[inline(always)]
-    fn sums<L: Lanes>(&self, l: L, query: &Query<L>, quantity: Quantity) -> Sums {
+    fn sums<L: Lanes>(&self, l: L, query: &Query<L>) -> Sums {
         let mut sums = [[0.0; 16]; 6];
         let points = Points::new(l, self.surfaces, query);
         let mut left = l.bitmask(query.asks);
@@ -100,7 +98,7 @@ impl Gather<'_> {
         while left != 0 {
             let tree = points.sub_maps[left.trailing_zeros() as usize % 16];
             let here = query.asks & l.eq_u(query.sub_map, l.u(tree));
-            self.walk(l, query, here, &self.map.trees[tree as usize], (&points, quantity), &mut sums);
+            self.walk(l, query, here, &self.map.trees[tree as usize], &points, &mut sums);
             left &= !l.bitmask(here);
         }
         sums
@@ -111,15 +109,7 @@ impl Gather<'_> {
     /// Where both sides of a split are near enough, one waits: bit k of `waiting` is set when the sibling of the node's
     /// ancestor k levels up waits. So the whole stack of a lane is one number.
     #[inline(always)]
-    fn walk<L: Lanes>(
-        &self,
-        l: L,
-        query: &Query<L>,
-        asks: L::M,
-        tree: &Tree,
-        (points, quantity): (&Points, Quantity),
-        sums: &mut Sums,
-    ) {
+    fn walk<L: Lanes>(&self, l: L, query: &Query<L>, asks: L::M, tree: &Tree, points: &Points, sums: &mut Sums) {
         let leaves = tree.blocks.len() as u32;
         if leaves == 0 {
             return;
@@ -144,7 +134,7 @@ impl Gather<'_> {
             while left != 0 {
                 let lane = left.trailing_zeros() as usize % 16;
                 let leaf = (nodes[lane] - leaves) as usize;
-                self.look(l, (tree, leaf), &points.lanes[lane], quantity, (sums, lane));
+                self.look(l, (tree, leaf), &points.lanes[lane], (sums, lane));
                 left &= left - 1;
             }
             // Up to the lowest ancestor whose sibling waits, and over to it.
@@ -158,52 +148,45 @@ impl Gather<'_> {
 
     /// Looks at the photons of a leaf from one point.
     #[inline(always)]
-    fn look<L: Lanes>(
-        &self,
-        l: L,
-        (tree, leaf): (&Tree, usize),
-        point: &Point,
-        quantity: Quantity,
-        (sums, lane): (&mut Sums, usize),
-    ) {
+    fn look<L: Lanes>(&self, l: L, (tree, leaf): (&Tree, usize), point: &Point, (sums, lane): (&mut Sums, usize)) {
         let [xs, ys, zs, tags] = &tree.blocks[leaf];
         let (from, normal) = (V3::splat(l, point.place), V3::splat(l, point.normal));
+        let (mut whole, mut half) = ([0.0; 3], [0.0; 3]);
         for first in (0..BLOCK).step_by(L::WIDTH) {
             let place = V3::new(l.load(&xs[first..]), l.load(&ys[first..]), l.load(&zs[first..]));
             let away = place - from;
             let squared = away.dot(l, away);
             let near = l.lt(squared, l.f(point.radius * point.radius));
-            let mut left = l.bitmask(near);
-            if left == 0 {
+            if !l.any(near) {
                 continue;
             }
-            left &= l.bitmask(l.le(l.abs(away.dot(l, normal)), l.f(point.radius * FLAT)));
+            let flat = near & l.le(l.abs(away.dot(l, normal)), l.f(point.radius * FLAT));
+            let own = l.eq_u(l.bits(l.load(&tags[first..])), l.u(point.own));
             let inner = l.bitmask(l.lt(squared, l.f(0.5 * point.radius * point.radius)));
-            while left != 0 {
-                let k = left.trailing_zeros() as usize % 16;
-                let at = first + k;
-                if point.sees(self.surfaces, tags[at].to_bits()) {
-                    self.add(tree.flux[leaf * BLOCK + at], quantity, inner >> k & 1 == 1, (sums, lane));
+            let mut seen = l.bitmask(flat & own);
+            let mut others = l.bitmask(flat & !own);
+            while others != 0 {
+                let k = others.trailing_zeros() as usize % 16;
+                let alike = self.surfaces.alike(Tag(tags[first + k].to_bits()), point.group, point.normal);
+                seen |= u64::from(alike) << k;
+                others &= others - 1;
+            }
+            while seen != 0 {
+                let k = seen.trailing_zeros() as usize % 16;
+                let inner = if inner >> k & 1 == 1 { 1.0 } else { 0.0 };
+                let [r, g, b, bounces] = tree.flux[leaf * BLOCK + first + k];
+                if bounces.to_bits() <= self.most_bounces {
+                    for (channel, flux) in [r, g, b].into_iter().enumerate() {
+                        whole[channel] += f64::from(flux);
+                        half[channel] += inner * f64::from(flux);
+                    }
                 }
-                left &= left - 1;
+                seen &= seen - 1;
             }
         }
-    }
-
-    #[inline(always)]
-    fn add(&self, [r, g, b, bounces]: [f32; 4], quantity: Quantity, inner: bool, (sums, lane): (&mut Sums, usize)) {
-        if bounces.to_bits() > self.most_bounces {
-            return;
-        }
-        let what = match quantity {
-            Quantity::Radiance => [r, g, b],
-            Quantity::Count => [bounces.to_bits() as f32, 1.0, 0.0],
-        };
-        for (k, flux) in what.into_iter().enumerate() {
-            sums[k][lane] += f64::from(flux);
-            if inner {
-                sums[3 + k][lane] += f64::from(flux);
-            }
+        for channel in 0..3 {
+            sums[channel][lane] += whole[channel];
+            sums[3 + channel][lane] += half[channel];
         }
     }
 }
@@ -221,14 +204,6 @@ struct Point {
     radius: f32,
 }
 
-impl Point {
-    /// Whether a photon lies on the surface and the side that ask.
-    #[inline(always)]
-    fn sees(&self, surfaces: &Surfaces, tag: u32) -> bool {
-        tag == self.own || surfaces.alike(Tag(tag), self.group, self.normal)
-    }
-}
-
 /// The points of a packet, one by one.
 struct Points {
     lanes: [Point; 16],
@@ -238,10 +213,7 @@ struct Points {
 impl Points {
     #[inline(always)]
     fn new<L: Lanes>(l: L, surfaces: &Surfaces, query: &Query<L>) -> Self {
-        let prim = l.select_u(query.asks, query.prim, l.u(0));
-        let group: Group<L> = surfaces.group(l, prim);
-        let outside = surfaces.is_outside(l, &group, (query.point, query.normal));
-        let own = prim | l.select_u(outside, l.u(Tag::OUTSIDE), l.u(0));
+        let (group, own) = query.surface(l, surfaces);
         let mut points = Self { lanes: [Point::default(); 16], sub_maps: [0; 16] };
         l.store_u(query.sub_map, &mut points.sub_maps);
         let (mut floats, mut words, mut radii) = ([[0.0; 16]; 6], [[0; 16]; 2], [0.0; 16]);

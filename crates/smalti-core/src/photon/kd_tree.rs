@@ -6,6 +6,7 @@
 //! the photon's number decides, so photons that share one coordinate, or all three, are no special case, and the tree
 //! is a function of the photons.
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::{Photons, Tag};
@@ -33,59 +34,50 @@ pub struct Tree {
     pub len: usize,
 }
 
-/// A photon on its way to its leaf.
+/// A photon on its way to its leaf: its coordinates as [`ordered`] bits.
 #[derive(Clone, Copy)]
 struct Item {
-    place: [f32; 3],
+    place: [u32; 3],
+    /// Its part (upper half), and which of the part it is.
     number: u32,
 }
 
+/// Photons of one part at most.
+const PART: usize = 1 << 16;
+
+/// Places and fluxes of some photons of a batch.
+type Part<'a> = (&'a [[f32; 4]], &'a [[f32; 4]]);
+
+/// Subtrees of more leaves than this are worth a task of their own.
+const TASK: usize = 256;
+
 impl Tree {
-    /// Orders photons.
-    pub fn new(photons: &Photons) -> Self {
-        let place = |&[x, y, z, _]: &[f32; 4]| [x, y, z];
-        let mut items: Vec<Item> =
-            (0..).zip(&photons.places).map(|(number, photon)| Item { place: place(photon), number }).collect();
+    /// Orders the photons of some batches, on the threads of the current pool.
+    pub fn new<'a>(batches: impl IntoIterator<Item = &'a Photons>) -> Self {
+        let part = |photons: &'a Photons| photons.places.chunks(PART).zip(photons.flux.chunks(PART));
+        let parts: Vec<Part<'a>> = batches.into_iter().flat_map(part).collect();
+        assert!(parts.len() <= PART, "photons have numbers of 32 bits");
+        let mut items = items(&parts);
         let count = items.len().div_ceil(BLOCK);
+        if count == 0 {
+            return Self::default();
+        }
+        let mut splits = vec![[0.0; 2]; count - 1];
+        let bounds = bounds(&items);
+        divide(&mut items, &mut splits, count, bounds);
+        items.par_chunks_mut(BLOCK).with_min_len(TASK).for_each(|leaf| leaf.sort_unstable_by_key(|item| item.number));
         let mut tree = Self {
-            splits: vec![[0.0; 2]; count.saturating_sub(1)],
+            splits: heap(&splits, count),
             blocks: vec![[[f32::INFINITY; BLOCK]; 4]; count],
             flux: vec![[0.0; 4]; count * BLOCK],
             len: items.len(),
         };
-        if count > 0 {
-            let bounds = bounds(&items);
-            tree.fill(&mut items, (1, count), bounds, photons);
-        }
+        let leaves = tree.blocks.par_iter_mut().zip(tree.flux.par_chunks_mut(BLOCK)).enumerate();
+        leaves.with_min_len(TASK).for_each(|(leaf, (block, flux))| {
+            let place = BLOCK * place_of_leaf(leaf, count);
+            fill((block, flux), &items[place..items.len().min(place + BLOCK)], &parts);
+        });
         tree
-    }
-
-    /// Makes the subtree of `node`, which has so many leaves, of photons within `bounds`.
-    fn fill(&mut self, items: &mut [Item], (node, leaves): (usize, usize), bounds: Bounds, photons: &Photons) {
-        if leaves == 1 {
-            return self.put(node - self.blocks.len(), items, photons);
-        }
-        let axis = widest(bounds);
-        let left = left_leaves(leaves);
-        let order = |a: &Item, b: &Item| a.place[axis].total_cmp(&b.place[axis]).then(a.number.cmp(&b.number));
-        let (_, middle, _) = items.select_nth_unstable_by(left * BLOCK, order);
-        let split = middle.place[axis];
-        self.splits[node - 1] = [split, f32::from_bits(axis as u32)];
-        let (mut low, mut high) = (bounds, bounds);
-        low[1][axis] = split;
-        high[0][axis] = split;
-        let (below, above) = items.split_at_mut(left * BLOCK);
-        self.fill(below, (2 * node, left), low, photons);
-        self.fill(above, (2 * node + 1, leaves - left), high, photons);
-    }
-
-    fn put(&mut self, leaf: usize, items: &mut [Item], photons: &Photons) {
-        items.sort_unstable_by_key(|item| item.number);
-        for (lane, item) in items.iter().enumerate() {
-            let photon = photons.places[item.number as usize];
-            (0..4).for_each(|k| self.blocks[leaf][k][lane] = photon[k]);
-            self.flux[leaf * BLOCK + lane] = photons.flux[item.number as usize];
-        }
     }
 
     /// Place, tag (bits) and flux of a photon by its number; `None` beyond the last one of a block.
@@ -166,15 +158,93 @@ fn left_leaves(count: usize) -> usize {
     row / 2 + (count - row).min(row / 2)
 }
 
+/// Which leaf it is from the left, of so many: the lower one of the two rows of leaves is on the left.
+fn place_of_leaf(leaf: usize, count: usize) -> usize {
+    let lower = (1 << (2 * count - 1).ilog2()) - count;
+    if leaf < lower { leaf + count - lower } else { leaf - lower }
+}
+
+/// Orders items by the leaves, of which there are so many, from left to right. The splits are those of the left subtree
+/// behind that of its root, and those of the right one behind them.
+fn divide(items: &mut [Item], splits: &mut [Split], leaves: usize, bounds: Bounds) {
+    let Some((own, below)) = splits.split_first_mut() else { return };
+    let axis = widest(bounds);
+    let left = left_leaves(leaves);
+    let key = |item: &Item| u64::from(item.place[axis]) << 32 | u64::from(item.number);
+    let (_, middle, _) = items.select_nth_unstable_by_key(left * BLOCK, key);
+    let split = unordered(middle.place[axis]);
+    *own = [split, f32::from_bits(axis as u32)];
+    let (mut low, mut high) = (bounds, bounds);
+    low[1][axis] = split;
+    high[0][axis] = split;
+    let (of_left, of_right) = items.split_at_mut(left * BLOCK);
+    let (splits_left, splits_right) = below.split_at_mut(left - 1);
+    let mut go_left = || divide(of_left, splits_left, left, low);
+    let mut go_right = || divide(of_right, splits_right, leaves - left, high);
+    if leaves > TASK {
+        rayon::join(go_left, go_right);
+    } else {
+        go_left();
+        go_right();
+    }
+}
+
+/// The splits of a tree with so many leaves in the order of its nodes, from those in the order of [`divide`].
+fn heap(splits: &[Split], leaves: usize) -> Vec<Split> {
+    let mut ordered = vec![[0.0; 2]; splits.len()];
+    let mut waiting = vec![(1, splits, leaves)];
+    while let Some((node, splits, leaves)) = waiting.pop() {
+        let Some((own, below)) = splits.split_first() else { continue };
+        ordered[node - 1] = *own;
+        let left = left_leaves(leaves);
+        let (of_left, of_right) = below.split_at(left - 1);
+        waiting.extend([(2 * node, of_left, left), (2 * node + 1, of_right, leaves - left)]);
+    }
+    ordered
+}
+
+/// The photons of all parts.
+fn items(parts: &[Part<'_>]) -> Vec<Item> {
+    let mut items = Vec::with_capacity(parts.iter().map(|(places, _)| places.len()).sum());
+    for (part, (places, _)) in (0u32..).zip(parts) {
+        let item =
+            |(at, &[x, y, z, _]): (u32, &[f32; 4])| Item { place: [x, y, z].map(ordered), number: part << 16 | at };
+        items.extend((0..).zip(*places).map(item));
+    }
+    items
+}
+
+/// Puts photons into a leaf.
+fn fill((block, fluxes): (&mut Block, &mut [[f32; 4]]), items: &[Item], parts: &[Part<'_>]) {
+    for (lane, item) in items.iter().enumerate() {
+        let (part, at) = (item.number >> 16, item.number as usize % PART);
+        let (places, flux) = parts[part as usize];
+        (0..4).for_each(|k| block[k][lane] = places[at][k]);
+        fluxes[lane] = flux[at];
+    }
+}
+
+/// Bits that are ordered as finite f32 are, −0 below 0.
+fn ordered(x: f32) -> u32 {
+    let bits = x.to_bits();
+    if bits >> 31 == 1 { !bits } else { bits | 1 << 31 }
+}
+
+/// The f32 that [`ordered`] made these bits of.
+fn unordered(bits: u32) -> f32 {
+    f32::from_bits(if bits >> 31 == 1 { bits & !(1 << 31) } else { !bits })
+}
+
 /// Low and high corner of a box.
 type Bounds = [[f32; 3]; 2];
 
 /// The box of some photons, at least one.
 fn bounds(items: &[Item]) -> Bounds {
-    let around = |[low, high]: Bounds, place: [f32; 3]| {
+    let around = |[low, high]: [[u32; 3]; 2], place: [u32; 3]| {
         [[0, 1, 2].map(|k: usize| low[k].min(place[k])), [0, 1, 2].map(|k: usize| high[k].max(place[k]))]
     };
-    items.iter().fold([items[0].place; 2], |so_far, item| around(so_far, item.place))
+    let corners = items.iter().fold([items[0].place; 2], |so_far, item| around(so_far, item.place));
+    corners.map(|corner| corner.map(unordered))
 }
 
 /// The longest side of a box; the first of equals.
@@ -200,5 +270,23 @@ mod tests {
             let below_two = (count..2 * count).filter(|leaf: &usize| leaf >> (leaf.ilog2() - 1) == 2);
             assert_eq!(left_leaves(count), below_two.count(), "{count}");
         }
+    }
+
+    #[test]
+    fn leaves_from_the_left_are_those_of_a_heap() {
+        for count in 1..300 {
+            // A leaf's way down from the root, as the digits of a binary fraction.
+            let way = |leaf: &usize| (leaf + count) << (20 - (leaf + count).ilog2());
+            let mut leaves: Vec<usize> = (0..count).collect();
+            leaves.sort_by_key(way);
+            assert!((0..count).all(|place| place_of_leaf(leaves[place], count) == place), "{count}");
+        }
+    }
+
+    #[test]
+    fn ordered_bits_are_ordered_as_numbers_are() {
+        let values = [f32::MIN, -1.0, -f32::MIN_POSITIVE, -1e-45, -0.0, 0.0, 1e-45, 0.5, 1.0, f32::MAX];
+        assert!(values.is_sorted_by(|a, b| ordered(*a) < ordered(*b)));
+        assert!(values.iter().all(|x| unordered(ordered(*x)).to_bits() == x.to_bits()));
     }
 }

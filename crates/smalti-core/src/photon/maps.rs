@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::kd_tree::Tree;
 use super::pass::{Pass, Traced};
-use super::{Account, Batch, Map, Photons, Pilot, SUB_MAPS, Visibility, pilot};
+use super::{Account, Batch, Map, Pilot, SUB_MAPS, Visibility, pilot};
 use crate::render::Renderer;
 
 /// How fast the radius shrinks: of the rounds' mean, variance falls as n^−α and squared bias as n^(2α−2).
@@ -156,14 +156,13 @@ impl Renderer {
 
     fn pilot(&self, pass: &Pass, radius: Option<f32>, progress: &AtomicU64) -> Pilot {
         let ahead = Pass { photons: pilot::PHOTONS, ..pass.clone() };
-        let (photons, _) = collected(self.traced(&ahead, ahead.batches(AHEAD), progress));
-        let pilot = Pilot::new(Tree::new(&photons), (pilot::PHOTONS, pass.of_sub_map()), radius);
+        let (tree, _) = collected(&self.traced(&ahead, ahead.batches(AHEAD), progress));
+        let pilot = Pilot::new(tree, (pilot::PHOTONS, pass.of_sub_map()), radius);
         if self.plan().shows() && radius.is_none() { pilot.gradual((pilot::PHOTONS, pass.photons)) } else { pilot }
     }
 
     fn visibility(&self, pass: &Pass, progress: &AtomicU64) -> Visibility {
-        let (photons, _) = collected(self.traced(pass, pass.batches(AHEAD), progress));
-        Visibility::new(Tree::new(&photons))
+        Visibility::new(collected(&self.traced(pass, pass.batches(AHEAD), progress)).0)
     }
 
     /// One tree is built after the other, so that little more is held than the trees.
@@ -172,8 +171,7 @@ impl Renderer {
         let sub_maps = |tree: u32| tree * SUB_MAPS / trees..(tree + 1) * SUB_MAPS / trees;
         let tree = |number: u32| {
             let batches = sub_maps(number).flat_map(|sub_map| pass.sub_map(round, sub_map)).collect();
-            let (photons, account) = collected(self.traced(pass, batches, progress));
-            (Tree::new(&photons), account)
+            collected(&self.traced(pass, batches, progress))
         };
         let (built, accounts): (Vec<Tree>, Vec<Account>) = (0..trees).into_par_iter().map(tree).unzip();
         let mut account = Account::default();
@@ -196,15 +194,11 @@ impl Renderer {
     }
 }
 
-/// The photons of some batches, in their order, and where their light went.
-fn collected(batches: Vec<Traced>) -> (Photons, Account) {
-    let mut all = (Photons::default(), Account::default());
-    all.0.reserve(batches.iter().map(|traced| traced.photons.len()).sum());
-    for traced in batches {
-        all.0.append(&traced.photons);
-        all.1 += &traced.account;
-    }
-    all
+/// The photons of some batches as a tree, and where their light went.
+fn collected(batches: &[Traced]) -> (Tree, Account) {
+    let mut account = Account::default();
+    batches.iter().for_each(|traced| account += &traced.account);
+    (Tree::new(batches.iter().map(|traced| &traced.photons)), account)
 }
 
 /// The radius of a round by that of the first.

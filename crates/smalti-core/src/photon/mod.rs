@@ -23,6 +23,7 @@ pub mod shadow;
 pub mod show;
 pub mod store;
 pub mod surfaces;
+pub mod view;
 pub mod visibility;
 
 pub use account::Account;
@@ -76,12 +77,6 @@ impl Photons {
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.places.is_empty()
-    }
-
-    /// Makes room for so many more.
-    pub fn reserve(&mut self, more: usize) {
-        self.places.reserve(more);
-        self.flux.reserve(more);
     }
 
     /// Adds `more` behind.

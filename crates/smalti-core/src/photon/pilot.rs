@@ -28,7 +28,7 @@ const WANTED: f32 = 4.0;
 const SLOPE: f32 = 0.25;
 
 /// Photons of the whole map that a point is to find where the map is what is seen.
-const SEEN: f32 = 64.0;
+const SEEN: f32 = 32.0;
 
 /// The radius that is seen is by the distance of this photon sent ahead: of fewer it would be by chance.
 const NEAR: usize = 16;
@@ -215,7 +215,7 @@ mod tests {
             photons.places.push([side * u, side * v, 0.0, f32::from_bits(Tag::new(0, true).0)]);
             photons.flux.push([1.0; 4]);
         }
-        Pilot::new(Tree::new(&photons), (2048, 2048), None).gradual((2048, 16 * 2048))
+        Pilot::new(Tree::new([&photons]), (2048, 2048), None).gradual((2048, 16 * 2048))
     }
 
     fn radius(pilot: &Pilot, x: f32) -> f32 {

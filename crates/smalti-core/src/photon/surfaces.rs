@@ -102,6 +102,15 @@ impl Surfaces {
         ALIKE <= if tag.outside() { turned } else { -turned }
     }
 
+    /// The same for a photon as all lanes see it.
+    #[inline(always)]
+    pub fn all_alike<L: Lanes>(&self, l: L, tag: Tag, group: &Group<L>, normal: V3<L>) -> L::M {
+        let [x, y, z, number] = self.records[tag.prim() as usize];
+        let turned = V3::splat(l, [x, y, z]).dot(l, normal);
+        let same = l.eq_u(group.number, l.u(number.to_bits())) & l.lt_u(group.number, l.u(SPHERE));
+        same & l.le(l.f(ALIKE), if tag.outside() { turned } else { -turned })
+    }
+
     /// The part in (0, 1] of the disc of `radius` about `point` that lies on the face `prim`'s surface.
     #[inline(always)]
     pub fn part_of_disc<L: Lanes>(&self, l: L, asks: L::M, prim: L::U, point: V3<L>, radius: L::F) -> L::F {

@@ -1,0 +1,157 @@
+//! Photons by area where the map itself is seen: the points of a packet are neighbours in the picture, so they walk
+//! down a tree together and all look at each photon of a leaf.
+//!
+//! A point adds the photons that count in the order of the tree, first within a leaf, then leaf by leaf in f64 (a disc
+//! may hold very many): what its packet looks at besides changes no bit.
+
+use super::gather::{FLAT, Gather, Query};
+use super::kd_tree::{BLOCK, Tree};
+use super::surfaces::Group;
+use super::{Quantity, Tag};
+use crate::lanes::{Lanes, Rgb, V3};
+
+/// What a lane has found, channel by channel.
+type Sums = [[f64; 16]; 3];
+
+/// A packet of points as it looks at photons.
+struct Viewers<'a, L: Lanes> {
+    query: &'a Query<L>,
+    group: Group<L>,
+    /// Tags of photons on the points' own primitives and sides.
+    own: L::U,
+    /// Squared radius.
+    r2: L::F,
+}
+
+impl Gather<'_> {
+    /// What `quantity` says of the photons at the points of a packet, by area.
+    #[inline(always)]
+    pub fn shown<L: Lanes>(&self, l: L, query: &Query<L>, quantity: Quantity) -> Rgb<L> {
+        let [x, y, z] = &self.view(l, query, quantity).map(|sums| sums.map(|sum| sum as f32));
+        let found = V3::new(l.load(x), l.load(y), l.load(z));
+        let something = query.asks & l.lt(l.f(0.0), found.max_component(l));
+        if !l.any(something) {
+            return found;
+        }
+        let part = self.surfaces.part_of_disc(l, something, query.prim, query.point, query.radius);
+        found.scale(l.f(core::f32::consts::FRAC_1_PI) / (query.radius * query.radius * part))
+    }
+
+    /// Sums over the trees that the points ask.
+    #[inline(always)]
+    fn view<L: Lanes>(&self, l: L, query: &Query<L>, quantity: Quantity) -> Sums {
+        let (group, own) = query.surface(l, self.surfaces);
+        let viewers = Viewers { query, group, own, r2: query.radius * query.radius };
+        let (mut sums, mut trees) = ([[0.0; 16]; 3], [0; 16]);
+        l.store_u(query.sub_map, &mut trees);
+        let mut left = l.bitmask(query.asks);
+        while left != 0 {
+            let tree = trees[left.trailing_zeros() as usize % 16];
+            let here = query.asks & l.eq_u(query.sub_map, l.u(tree));
+            self.walk_together(l, (&viewers, here), &self.map.trees[tree as usize], quantity, &mut sums);
+            left &= !l.bitmask(here);
+        }
+        sums
+    }
+
+    /// Takes the lanes `asks` through a tree, from left to right, to every leaf that one of them has to look at.
+    #[inline(always)]
+    fn walk_together<L: Lanes>(
+        &self,
+        l: L,
+        (viewers, asks): (&Viewers<'_, L>, L::M),
+        tree: &Tree,
+        quantity: Quantity,
+        sums: &mut Sums,
+    ) {
+        let leaves = tree.blocks.len();
+        // One right child for each node above.
+        let (mut waiting, mut count, mut node) = ([0; usize::BITS as usize], 0, 1);
+        while leaves > 0 {
+            if node < leaves {
+                let [left, right] = viewers.sides(l, asks, tree.splits[node - 1]);
+                if left && right {
+                    waiting[count] = 2 * node + 1;
+                    count += 1;
+                }
+                node = 2 * node + usize::from(!left);
+                continue;
+            }
+            self.view_leaf(l, (viewers, asks), (tree, node - leaves), quantity, sums);
+            if count == 0 {
+                break;
+            }
+            count -= 1;
+            node = waiting[count];
+        }
+    }
+
+    /// Looks at the photons of a leaf from all points.
+    #[inline(always)]
+    fn view_leaf<L: Lanes>(
+        &self,
+        l: L,
+        (viewers, asks): (&Viewers<'_, L>, L::M),
+        (tree, leaf): (&Tree, usize),
+        quantity: Quantity,
+        sums: &mut Sums,
+    ) {
+        let block = &tree.blocks[leaf];
+        let (mut found, mut something) = (V3::splat(l, [0.0; 3]), false);
+        for at in 0..BLOCK {
+            let [x, y, z, tag] = [block[0][at], block[1][at], block[2][at], block[3][at]];
+            let away = V3::splat(l, [x, y, z]) - viewers.query.point;
+            let near = asks & l.lt(away.dot(l, away), viewers.r2);
+            if !l.any(near) {
+                continue;
+            }
+            let height = l.abs(away.dot(l, viewers.query.normal));
+            let flat = near & l.le(height, viewers.query.radius * l.f(FLAT));
+            let mut seen = flat & l.eq_u(viewers.own, l.u(tag.to_bits()));
+            let others = flat & !seen;
+            if l.any(others) {
+                let normal = viewers.query.normal;
+                seen = seen | (others & self.surfaces.all_alike(l, Tag(tag.to_bits()), &viewers.group, normal));
+            }
+            let what = self.says(tree.flux[leaf * BLOCK + at], quantity).map(
+                #[inline(always)]
+                |x| l.keep(seen, l.f(x)),
+            );
+            found = found + V3::new(what[0], what[1], what[2]);
+            something = true;
+        }
+        if something {
+            let mut columns = [[0.0; 16]; 3];
+            l.store(found.x, &mut columns[0]);
+            l.store(found.y, &mut columns[1]);
+            l.store(found.z, &mut columns[2]);
+            for (sum, more) in sums.as_flattened_mut().iter_mut().zip(columns.as_flattened()) {
+                *sum += f64::from(*more);
+            }
+        }
+    }
+
+    /// What `quantity` says of a photon.
+    #[inline(always)]
+    fn says(&self, [r, g, b, bounces]: [f32; 4], quantity: Quantity) -> [f32; 3] {
+        let bounces = bounces.to_bits();
+        match quantity {
+            _ if bounces > self.most_bounces => [0.0; 3],
+            Quantity::Radiance => [r, g, b],
+            Quantity::Count => [bounces as f32, 1.0, 0.0],
+        }
+    }
+}
+
+impl<L: Lanes> Viewers<'_, L> {
+    /// Whether a lane of `asks` has to look below a split on its left, on its right.
+    #[inline(always)]
+    fn sides(&self, l: L, asks: L::M, [split, axis]: [f32; 2]) -> [bool; 2] {
+        let place = self.query.point.components()[axis.to_bits() as usize % 3];
+        let along = l.f(split) - place;
+        let near = l.lt(along * along, self.r2);
+        let left = l.any(asks & (near | l.le(l.f(0.0), along)));
+        let right = l.any(asks & (near | l.le(along, l.f(0.0))));
+        [left, right]
+    }
+}
