@@ -65,9 +65,12 @@ impl Gather<'_> {
         sums: &mut Sums,
     ) {
         let leaves = tree.blocks.len();
+        if leaves == 0 {
+            return;
+        }
         // One right child for each node above.
         let (mut waiting, mut count, mut node) = ([0; usize::BITS as usize], 0, 1);
-        while leaves > 0 {
+        loop {
             if node < leaves {
                 let [left, right] = viewers.sides(l, asks, tree.splits[node - 1]);
                 if left && right {
@@ -96,11 +99,11 @@ impl Gather<'_> {
         quantity: Quantity,
         sums: &mut Sums,
     ) {
-        let block = &tree.blocks[leaf];
+        let [xs, ys, zs, tags] = &tree.blocks[leaf];
+        let photons = xs.iter().zip(ys).zip(zs).zip(tags).zip(&tree.flux[leaf * BLOCK..]);
         let (mut found, mut something) = (V3::splat(l, [0.0; 3]), false);
-        for at in 0..BLOCK {
-            let [x, y, z, tag] = [block[0][at], block[1][at], block[2][at], block[3][at]];
-            let away = V3::splat(l, [x, y, z]) - viewers.query.point;
+        for ((((x, y), z), tag), flux) in photons {
+            let away = V3::splat(l, [*x, *y, *z]) - viewers.query.point;
             let near = asks & l.lt(away.dot(l, away), viewers.r2);
             if !l.any(near) {
                 continue;
@@ -113,7 +116,7 @@ impl Gather<'_> {
                 let normal = viewers.query.normal;
                 seen = seen | (others & self.surfaces.all_alike(l, Tag(tag.to_bits()), &viewers.group, normal));
             }
-            let what = self.says(tree.flux[leaf * BLOCK + at], quantity).map(
+            let what = self.says(*flux, quantity).map(
                 #[inline(always)]
                 |x| l.keep(seen, l.f(x)),
             );
