@@ -185,7 +185,7 @@ impl Renderer {
                 let batch = first..pixels.min(first + at_once);
                 workspace.pixels.set(tile.area, batch.start, batch.end);
                 self.trace(workspace, from..to, maps, &mut work);
-                deposit(workspace, tile, batch.clone(), from..to, &mut work);
+                deposit(workspace, tile, from..to, &mut work);
                 progress.fetch_add((batch.len() * (to - from) as usize) as u64, Ordering::Relaxed);
             }
             tile.samples = to;
@@ -368,10 +368,11 @@ fn ready(stream: &mut Stream, waiting: usize, needed: bool) -> Option<&mut Strea
 }
 
 /// Adds the slots of a batch to its pixels, in sample order.
-fn deposit(workspace: &Workspace, tile: &mut Tile, batch: Range<usize>, samples: Range<u32>, work: &mut Work) {
-    let of_samples = workspace.slots.radiance().chunks_exact(batch.len());
+fn deposit(workspace: &Workspace, tile: &mut Tile, samples: Range<u32>, work: &mut Work) {
+    let numbers = workspace.pixels.numbers();
+    let of_samples = workspace.slots.radiance().chunks_exact(numbers.len());
     for (sample, slots) in samples.clone().zip(of_samples) {
-        for (pixel, radiance) in batch.clone().zip(slots) {
+        for (pixel, radiance) in numbers.iter().map(|number| *number as usize).zip(slots) {
             let finite = radiance.iter().all(|x| x.is_finite());
             if !finite {
                 work.rejected.push(rejected(tile, pixel, sample));
@@ -380,17 +381,18 @@ fn deposit(workspace: &Workspace, tile: &mut Tile, batch: Range<usize>, samples:
         }
     }
     if !workspace.slots.shift().is_empty() {
-        deposit_shifts(workspace, tile, batch, samples);
+        deposit_shifts(workspace, tile, samples);
     }
 }
 
 /// Adds what photon radii add to its pixels.
-fn deposit_shifts(workspace: &Workspace, tile: &mut Tile, batch: Range<usize>, samples: Range<u32>) {
+fn deposit_shifts(workspace: &Workspace, tile: &mut Tile, samples: Range<u32>) {
+    let numbers = workspace.pixels.numbers();
     tile.shifts.resize(tile.pixels.len(), Shift::default());
-    for (sample, slots) in samples.zip(workspace.slots.shift().chunks_exact(batch.len())) {
-        for (pixel, shift) in batch.clone().zip(slots) {
+    for (sample, slots) in samples.zip(workspace.slots.shift().chunks_exact(numbers.len())) {
+        for (pixel, shift) in numbers.iter().zip(slots) {
             if shift.iter().all(|x| x.is_finite()) {
-                let sum = &mut tile.shifts[pixel][(sample / ROUND % 2) as usize];
+                let sum = &mut tile.shifts[*pixel as usize][(sample / ROUND % 2) as usize];
                 (0..3).for_each(|c| sum[c] += shift[c]);
             }
         }

@@ -9,7 +9,7 @@
 //! leaf at once. What counts is added photon by photon, in the order of the tree: no width can change a bit. (Where a map
 //! itself is seen, all points of a packet look together: [`view`](super::view).)
 
-use super::kd_tree::{BLOCK, Tree};
+use super::kd_tree::{BLOCK, Block, Tree};
 use super::surfaces::Group;
 use super::{Map, Surfaces, Tag};
 use crate::lanes::{Lanes, Rgb, V3};
@@ -149,28 +149,10 @@ impl Gather<'_> {
     /// Looks at the photons of a leaf from one point.
     #[inline(always)]
     fn look<L: Lanes>(&self, l: L, (tree, leaf): (&Tree, usize), point: &Point, (sums, lane): (&mut Sums, usize)) {
-        let [xs, ys, zs, tags] = &tree.blocks[leaf];
-        let (from, normal) = (V3::splat(l, point.place), V3::splat(l, point.normal));
         let (mut whole, mut half) = ([0.0; 3], [0.0; 3]);
         for first in (0..BLOCK).step_by(L::WIDTH) {
-            let place = V3::new(l.load(&xs[first..]), l.load(&ys[first..]), l.load(&zs[first..]));
-            let away = place - from;
-            let squared = away.dot(l, away);
-            let near = l.lt(squared, l.f(point.radius * point.radius));
-            if !l.any(near) {
-                continue;
-            }
-            let flat = near & l.le(l.abs(away.dot(l, normal)), l.f(point.radius * FLAT));
-            let own = l.eq_u(l.bits(l.load(&tags[first..])), l.u(point.own));
+            let (mut seen, squared) = self.seen(l, &tree.blocks[leaf], first, point);
             let inner = l.bitmask(l.lt(squared, l.f(0.5 * point.radius * point.radius)));
-            let mut seen = l.bitmask(flat & own);
-            let mut others = l.bitmask(flat & !own);
-            while others != 0 {
-                let k = others.trailing_zeros() as usize % 16;
-                let alike = self.surfaces.alike(Tag(tags[first + k].to_bits()), point.group, point.normal);
-                seen |= u64::from(alike) << k;
-                others &= others - 1;
-            }
             while seen != 0 {
                 let k = seen.trailing_zeros() as usize % 16;
                 let inner = if inner >> k & 1 == 1 { 1.0 } else { 0.0 };
@@ -189,11 +171,35 @@ impl Gather<'_> {
             sums[3 + channel][lane] += half[channel];
         }
     }
+
+    /// Which of a leaf's photons from number `first` on a point sees (bits), and how far each is, squared.
+    #[inline(always)]
+    pub fn seen<L: Lanes>(&self, l: L, [xs, ys, zs, tags]: &Block, first: usize, point: &Point) -> (u64, L::F) {
+        let place = V3::new(l.load(&xs[first..]), l.load(&ys[first..]), l.load(&zs[first..]));
+        let away = place - V3::splat(l, point.place);
+        let squared = away.dot(l, away);
+        let near = l.lt(squared, l.f(point.radius * point.radius));
+        if !l.any(near) {
+            return (0, squared);
+        }
+        let height = l.abs(away.dot(l, V3::splat(l, point.normal)));
+        let flat = near & l.le(height, l.f(point.radius * FLAT));
+        let own = l.eq_u(l.bits(l.load(&tags[first..])), l.u(point.own));
+        let mut seen = l.bitmask(flat & own);
+        let mut others = l.bitmask(flat & !own);
+        while others != 0 {
+            let k = others.trailing_zeros() as usize % 16;
+            let alike = self.surfaces.alike(Tag(tags[first + k].to_bits()), point.group, point.normal);
+            seen |= u64::from(alike) << k;
+            others &= others - 1;
+        }
+        (seen, squared)
+    }
 }
 
 /// A point as it looks at photons.
 #[derive(Clone, Copy, Default)]
-struct Point {
+pub struct Point {
     place: [f32; 3],
     normal: [f32; 3],
     /// The tag of photons on its own primitive and side.
@@ -205,14 +211,17 @@ struct Point {
 }
 
 /// The points of a packet, one by one.
-struct Points {
-    lanes: [Point; 16],
-    sub_maps: [u32; 16],
+pub struct Points {
+    /// Lane by lane.
+    pub lanes: [Point; 16],
+    /// The tree that each asks.
+    pub sub_maps: [u32; 16],
 }
 
 impl Points {
+    /// The points of a query.
     #[inline(always)]
-    fn new<L: Lanes>(l: L, surfaces: &Surfaces, query: &Query<L>) -> Self {
+    pub fn new<L: Lanes>(l: L, surfaces: &Surfaces, query: &Query<L>) -> Self {
         let (group, own) = query.surface(l, surfaces);
         let mut points = Self { lanes: [Point::default(); 16], sub_maps: [0; 16] };
         l.store_u(query.sub_map, &mut points.sub_maps);

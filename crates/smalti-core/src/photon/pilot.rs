@@ -28,7 +28,7 @@ const WANTED: f32 = 4.0;
 const SLOPE: f32 = 0.25;
 
 /// Photons of the whole map that a point is to find where the map is what is seen.
-const SEEN: f32 = 32.0;
+const SEEN: f32 = 48.0;
 
 /// The radius that is seen is by the distance of this photon sent ahead: of fewer it would be by chance.
 const NEAR: usize = 16;

@@ -1,14 +1,18 @@
 //! Photons by area where the map itself is seen: the points of a packet are neighbours in the picture, so they walk
-//! down a tree together and all look at each photon of a leaf.
+//! down a tree together. A leaf that few of them have to look at, each of these looks at by itself, all photons at once;
+//! at the others all points look together, photon by photon.
 //!
 //! A point adds the photons that count in the order of the tree, first within a leaf, then leaf by leaf in f64 (a disc
-//! may hold very many): what its packet looks at besides changes no bit.
+//! may hold very many): what its packet looks at besides, and how, changes no bit.
 
-use super::gather::{FLAT, Gather, Query};
+use super::gather::{FLAT, Gather, Points, Query};
 use super::kd_tree::{BLOCK, Tree};
 use super::surfaces::Group;
 use super::{Quantity, Tag};
 use crate::lanes::{Lanes, Rgb, V3};
+
+/// Points up to this many look at a leaf one by one.
+const FEW: u32 = 4;
 
 /// What a lane has found, channel by channel.
 type Sums = [[f64; 16]; 3];
@@ -16,6 +20,7 @@ type Sums = [[f64; 16]; 3];
 /// A packet of points as it looks at photons.
 struct Viewers<'a, L: Lanes> {
     query: &'a Query<L>,
+    points: Points,
     group: Group<L>,
     /// Tags of photons on the points' own primitives and sides.
     own: L::U,
@@ -41,12 +46,12 @@ impl Gather<'_> {
     #[inline(always)]
     fn view<L: Lanes>(&self, l: L, query: &Query<L>, quantity: Quantity) -> Sums {
         let (group, own) = query.surface(l, self.surfaces);
-        let viewers = Viewers { query, group, own, r2: query.radius * query.radius };
-        let (mut sums, mut trees) = ([[0.0; 16]; 3], [0; 16]);
-        l.store_u(query.sub_map, &mut trees);
+        let points = Points::new(l, self.surfaces, query);
+        let viewers = Viewers { query, points, group, own, r2: query.radius * query.radius };
+        let mut sums = [[0.0; 16]; 3];
         let mut left = l.bitmask(query.asks);
         while left != 0 {
-            let tree = trees[left.trailing_zeros() as usize % 16];
+            let tree = viewers.points.sub_maps[left.trailing_zeros() as usize % 16];
             let here = query.asks & l.eq_u(query.sub_map, l.u(tree));
             self.walk_together(l, (&viewers, here), &self.map.trees[tree as usize], quantity, &mut sums);
             left &= !l.bitmask(here);
@@ -68,24 +73,59 @@ impl Gather<'_> {
         if leaves == 0 {
             return;
         }
-        // One right child for each node above.
-        let (mut waiting, mut count, mut node) = ([0; usize::BITS as usize], 0, 1);
+        // One right child for each node above, with the lanes that have to look below.
+        let (mut waiting, mut count) = ([(0, asks); usize::BITS as usize], 0);
+        let (mut node, mut here) = (1, asks);
         loop {
             if node < leaves {
-                let [left, right] = viewers.sides(l, asks, tree.splits[node - 1]);
-                if left && right {
-                    waiting[count] = 2 * node + 1;
+                let [left, right] = viewers.sides(l, here, tree.splits[node - 1]);
+                let go_left = l.any(left);
+                if go_left && l.any(right) {
+                    waiting[count] = (2 * node + 1, right);
                     count += 1;
                 }
-                node = 2 * node + usize::from(!left);
+                (node, here) = if go_left { (2 * node, left) } else { (2 * node + 1, right) };
                 continue;
             }
-            self.view_leaf(l, (viewers, asks), (tree, node - leaves), quantity, sums);
+            let leaf = (tree, node - leaves);
+            if l.bitmask(here).count_ones() <= FEW {
+                self.view_leaf_alone(l, (viewers, here), leaf, quantity, sums);
+            } else {
+                self.view_leaf(l, (viewers, here), leaf, quantity, sums);
+            }
             if count == 0 {
                 break;
             }
             count -= 1;
-            node = waiting[count];
+            (node, here) = waiting[count];
+        }
+    }
+
+    /// Looks at the photons of a leaf from each of the points `asks`.
+    #[inline(always)]
+    fn view_leaf_alone<L: Lanes>(
+        &self,
+        l: L,
+        (viewers, asks): (&Viewers<'_, L>, L::M),
+        (tree, leaf): (&Tree, usize),
+        quantity: Quantity,
+        sums: &mut Sums,
+    ) {
+        let mut left = l.bitmask(asks);
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize % 16;
+            let mut found = [0.0; 3];
+            for first in (0..BLOCK).step_by(L::WIDTH) {
+                let (mut seen, _) = self.seen(l, &tree.blocks[leaf], first, &viewers.points.lanes[lane]);
+                while seen != 0 {
+                    let at = leaf * BLOCK + first + seen.trailing_zeros() as usize % 16;
+                    let what = self.says(tree.flux[at], quantity);
+                    (0..3).for_each(|k| found[k] += what[k]);
+                    seen &= seen - 1;
+                }
+            }
+            (0..3).for_each(|k| sums[k][lane] += f64::from(found[k]));
+            left &= left - 1;
         }
     }
 
@@ -147,14 +187,12 @@ impl Gather<'_> {
 }
 
 impl<L: Lanes> Viewers<'_, L> {
-    /// Whether a lane of `asks` has to look below a split on its left, on its right.
+    /// The lanes of `asks` that have to look below a split on its left, and on its right.
     #[inline(always)]
-    fn sides(&self, l: L, asks: L::M, [split, axis]: [f32; 2]) -> [bool; 2] {
+    fn sides(&self, l: L, asks: L::M, [split, axis]: [f32; 2]) -> [L::M; 2] {
         let place = self.query.point.components()[axis.to_bits() as usize % 3];
         let along = l.f(split) - place;
         let near = l.lt(along * along, self.r2);
-        let left = l.any(asks & (near | l.le(l.f(0.0), along)));
-        let right = l.any(asks & (near | l.le(along, l.f(0.0))));
-        [left, right]
+        [asks & (near | l.le(l.f(0.0), along)), asks & (near | l.le(along, l.f(0.0)))]
     }
 }

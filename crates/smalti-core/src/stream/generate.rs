@@ -1,4 +1,5 @@
-//! Camera rays: the samples of a batch of pixels.
+//! Camera rays: the samples of a batch of pixels, block after block of neighbours, so that the rays of a packet stay
+//! close together.
 
 use super::{Columns, DIRECTION, ETA, KEY, LEAVES, ORIGIN, PDF, SLOT, Stream, THROUGHPUT};
 use crate::film::ROUND;
@@ -8,28 +9,40 @@ use crate::sampling::{Keys, Purpose, pair, sampler::pixel_key};
 use crate::scene::View;
 use crate::settings::{Rect, Settings};
 
+/// Side of a block of pixels: as many pixels as the widest level has lanes.
+const BLOCK: u32 = 4;
+
 /// The pixels of a batch, as columns.
 #[derive(Clone, Debug, Default)]
 pub struct Pixels {
     x: Vec<u32>,
     y: Vec<u32>,
     key: Vec<u32>,
+    /// Which pixels of the area they are, counted row by row.
+    numbers: Vec<u32>,
     count: usize,
 }
 
 impl Pixels {
-    /// Pixels `from..to` of `area`, counted row by row.
+    /// Pixels `from..to` of `area`, counted block by block.
     pub fn set(&mut self, area: Rect, from: usize, to: usize) {
         self.count = to - from;
+        self.numbers.clear();
+        self.numbers.extend(block_by_block(area).skip(from).take(self.count));
         self.x.clear();
         self.y.clear();
-        for index in from as u32..to as u32 {
-            self.x.push(area.x + index % area.width);
-            self.y.push(area.y + index / area.width);
+        for number in &self.numbers {
+            self.x.push(area.x + number % area.width);
+            self.y.push(area.y + number / area.width);
         }
         // A packet may read past the last pixel.
         self.x.resize(self.count + 16, 0);
         self.y.resize(self.count + 16, 0);
+    }
+
+    /// Which pixels of their area they are, counted row by row.
+    pub fn numbers(&self) -> &[u32] {
+        &self.numbers
     }
 
     /// Keys for one round.
@@ -37,6 +50,17 @@ impl Pixels {
         self.key.clear();
         self.key.extend(self.x.iter().zip(&self.y).map(|(x, y)| pixel_key(seed, *x, *y, round)));
     }
+}
+
+/// The numbers of an area's pixels, block by block.
+fn block_by_block(area: Rect) -> impl Iterator<Item = u32> {
+    let Rect { width, height, .. } = area;
+    let blocks =
+        (0..height).step_by(BLOCK as usize).flat_map(move |y| (0..width).step_by(BLOCK as usize).map(move |x| (x, y)));
+    blocks.flat_map(move |(left, top)| {
+        let rows = top..height.min(top + BLOCK);
+        rows.flat_map(move |y| (left..width.min(left + BLOCK)).map(move |x| y * width + x))
+    })
 }
 
 /// Writes the camera rays of sample `sample` of all pixels to slots `first..` of `rays`.
