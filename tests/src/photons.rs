@@ -6,7 +6,7 @@ use smalti_core::lanes::{One, V3};
 use smalti_core::photon::gather::{Gather, Query};
 use smalti_core::photon::kd_tree::Tree;
 use smalti_core::photon::pass::{Pass, PhotonWorkspace};
-use smalti_core::photon::{Account, Kind, Map, Photons, SUB_MAPS, Surfaces, Traced};
+use smalti_core::photon::{Account, Kind, Map, Photons, Quantity, SUB_MAPS, Surfaces, Traced};
 use smalti_core::render::{Level, Renderer};
 use smalti_core::scene::World;
 use smalti_core::settings::{Integrator, Settings};
@@ -70,14 +70,28 @@ pub fn irradiance(
     place: &Place,
     radius: f32,
 ) -> [f64; 3] {
-    let query = Query {
+    let found = Gather { map, surfaces, most_bounces }.irradiance(One, &query(sub_map, place, radius)).irradiance;
+    [found.x, found.y, found.z].map(f64::from)
+}
+
+/// What `quantity` says of the photons there, by area.
+pub fn shown(
+    (map, sub_map, most_bounces): (&Map, u32, u32),
+    surfaces: &Surfaces,
+    (place, radius): (&Place, f32),
+    quantity: Quantity,
+) -> [f64; 3] {
+    let found = Gather { map, surfaces, most_bounces }.shown(One, &query(sub_map, place, radius), quantity);
+    [found.x, found.y, found.z].map(f64::from)
+}
+
+fn query(sub_map: u32, place: &Place, radius: f32) -> Query<One> {
+    Query {
         point: V3::splat(One, place.point),
         normal: V3::splat(One, place.normal),
         prim: place.prim,
         asks: true,
         sub_map,
         radius,
-    };
-    let found = Gather { map, surfaces, most_bounces }.irradiance(One, &query).irradiance;
-    [found.x, found.y, found.z].map(f64::from)
+    }
 }

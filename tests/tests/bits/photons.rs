@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use smalti_core::film::{Film, Image, Pixel};
+use smalti_core::photon::{Kind, Quantity, Show};
 use smalti_core::render::{Level, Renderer};
 use smalti_core::scene::World;
 use smalti_core::scene::world::Material;
@@ -65,6 +66,32 @@ fn threads_tiles_and_simd_levels_with_photons() {
         for level in Level::available() {
             let way = Way { level, threads: 2, ..Way::default() };
             assert_eq!(hash_of(&world, &settings, way), one, "{way:?} {settings:?}");
+        }
+    }
+}
+
+/// Points of a packet look at a map together or one by one: whatever it is, and whoever else is in the packet.
+#[test]
+fn threads_tiles_and_simd_levels_where_a_map_is_seen() {
+    let world = room();
+    for (map, quantity) in [(Kind::Caustic, Quantity::Radiance), (Kind::Global, Quantity::Count)] {
+        let [settings, ..] = choices();
+        let settings = Settings { spp: 4, ..settings };
+        let seen = |way: Way| {
+            let show = Show { map, quantity };
+            let renderer = Renderer::showing(&world, settings.clone(), show, way.level).expect("there are photons");
+            let film = Film::new(settings.area(), way.tile);
+            let pool = pool(way.threads).expect("threads");
+            render(&renderer, film, &pool, &Cancel::default(), None).expect("no panic").film.develop()
+        };
+        let one = seen(Way::default());
+        assert!(one.pixels.iter().filter(|pixel| pixel[0] > 0.0).count() > one.pixels.len() / 2);
+        for (threads, tile) in [(2, 7), (3, 1000), (1, 1)] {
+            let way = Way { threads, tile, ..Way::default() };
+            assert_eq!(hash(&seen(way)), hash(&one), "{way:?} {map:?}");
+        }
+        for level in Level::available() {
+            assert_eq!(hash(&seen(Way { level, ..Way::default() })), hash(&one), "{level:?} {map:?}");
         }
     }
 }

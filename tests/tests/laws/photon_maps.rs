@@ -7,12 +7,12 @@ use glam::{DVec2, DVec3};
 use smalti_core::lanes::{One, V3};
 use smalti_core::photon::kd_tree::{BLOCK, Tree};
 use smalti_core::photon::nearest::nearest;
-use smalti_core::photon::{Photons, Surfaces, Tag};
+use smalti_core::photon::{Photons, Quantity, Surfaces, Tag};
 use smalti_core::scene::{Scene, World, compile};
 use smalti_core::settings::Settings;
 use smalti_tests::build::{at, closed_box, globe, grey, material, mesh, point_light, polygon, quad};
 use smalti_tests::oracle::Random;
-use smalti_tests::photons::{Place, irradiance, map_of, mapper, trace};
+use smalti_tests::photons::{Place, irradiance, map_of, mapper, shown, trace};
 
 /// Names and places of sets that trees have gone wrong with, and of random ones.
 fn sets() -> Vec<(String, Vec<[f32; 3]>)> {
@@ -153,8 +153,14 @@ fn a_gather_adds_up_what_brute_force_adds_up() {
                 let place = Place { point, normal, prim: 0 };
                 let [r, ..] = irradiance((&map, 0, most_bounces), &surfaces, &place, radius);
                 let expected = f64::from(sum) / (PI * f64::from(radius) * f64::from(radius));
-                let same = if sum == 0.0 { r == 0.0 } else { (r / expected - 1.0).abs() < 1e-6 };
-                assert!(same, "{name}: {r} instead of {expected} at {point:?} within {radius}");
+                let same = |r: f64| if sum == 0.0 { r == 0.0 } else { (r / expected - 1.0).abs() < 1e-6 };
+                assert!(same(r), "{name}: {r} instead of {expected} at {point:?} within {radius}");
+                let shown = |quantity| shown((&map, 0, most_bounces), &surfaces, (&place, radius), quantity);
+                let [r, ..] = shown(Quantity::Radiance);
+                assert!(same(r), "{name}: {r} instead of {expected} is seen at {point:?} within {radius}");
+                let photons = photons.places.iter().zip(&photons.flux).filter(|(place, flux)| counts(place, flux));
+                let [_, count, _] = shown(Quantity::Count).map(|x| x * PI * f64::from(radius) * f64::from(radius));
+                assert!((count - photons.count() as f64).abs() <= 1e-6 * count, "{name}: {count} photons are seen");
                 asked += 1;
                 found += u32::from(sum > 0.0);
             }
