@@ -21,20 +21,26 @@ pub struct Pixels {
     /// Which pixels of the area they are, counted row by row.
     numbers: Vec<u32>,
     count: usize,
+    /// What [`Pixels::set`] was asked for last.
+    batch: Option<(Rect, usize, usize)>,
 }
 
 impl Pixels {
     /// Pixels `from..to` of `area`, counted block by block.
     pub fn set(&mut self, area: Rect, from: usize, to: usize) {
+        if self.batch == Some((area, from, to)) {
+            return;
+        }
+        self.batch = Some((area, from, to));
         self.count = to - from;
         self.numbers.clear();
-        self.numbers.extend(block_by_block(area).skip(from).take(self.count));
+        number_blocks(area, &mut self.numbers);
+        self.numbers.truncate(to);
+        self.numbers.drain(..from);
         self.x.clear();
         self.y.clear();
-        for number in &self.numbers {
-            self.x.push(area.x + number % area.width);
-            self.y.push(area.y + number / area.width);
-        }
+        self.x.extend(self.numbers.iter().map(|number| area.x + number % area.width));
+        self.y.extend(self.numbers.iter().map(|number| area.y + number / area.width));
         // A packet may read past the last pixel.
         self.x.resize(self.count + 16, 0);
         self.y.resize(self.count + 16, 0);
@@ -53,14 +59,14 @@ impl Pixels {
 }
 
 /// The numbers of an area's pixels, block by block.
-fn block_by_block(area: Rect) -> impl Iterator<Item = u32> {
-    let Rect { width, height, .. } = area;
-    let blocks =
-        (0..height).step_by(BLOCK as usize).flat_map(move |y| (0..width).step_by(BLOCK as usize).map(move |x| (x, y)));
-    blocks.flat_map(move |(left, top)| {
-        let rows = top..height.min(top + BLOCK);
-        rows.flat_map(move |y| (left..width.min(left + BLOCK)).map(move |x| y * width + x))
-    })
+fn number_blocks(Rect { width, height, .. }: Rect, numbers: &mut Vec<u32>) {
+    for top in (0..height).step_by(BLOCK as usize) {
+        for left in (0..width).step_by(BLOCK as usize) {
+            for y in top..height.min(top + BLOCK) {
+                numbers.extend((left..width.min(left + BLOCK)).map(|x| y * width + x));
+            }
+        }
+    }
 }
 
 /// Writes the camera rays of sample `sample` of all pixels to slots `first..` of `rays`.
