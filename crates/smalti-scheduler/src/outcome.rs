@@ -89,6 +89,8 @@ impl Rejections {
 pub struct Timing {
     /// From the first unit to the last.
     pub elapsed: Duration,
+    /// The part of it in which photons were emitted and their maps built, by all workers; no tile is worked on then.
+    pub photons: Duration,
     /// Passes that every tile completed.
     pub passes: u32,
     /// Time spent in each tile, over all passes.
@@ -120,9 +122,9 @@ impl Timing {
         Some(Balance { min: times[0], median: times[times.len() / 2], max, slowest })
     }
 
-    /// The share of the time, in [0, 1], that each worker spent waiting.
+    /// The share of the time for tiles, in [0, 1], that each worker spent waiting.
     pub fn idle(&self) -> Vec<f64> {
-        let all = self.elapsed.as_secs_f64();
+        let all = self.elapsed.saturating_sub(self.photons).as_secs_f64();
         let idle = |busy: &Duration| if all > 0.0 { 1.0 - busy.as_secs_f64() / all } else { 0.0 };
         self.workers.iter().map(|busy| idle(busy).clamp(0.0, 1.0)).collect()
     }
@@ -168,7 +170,8 @@ mod tests {
     #[test]
     fn idle_is_what_is_not_busy() {
         let workers = vec![Duration::from_secs(3), Duration::from_secs(5)];
-        let timing = Timing { elapsed: Duration::from_secs(4), workers, ..Timing::default() };
+        let [elapsed, photons] = [6, 2].map(Duration::from_secs);
+        let timing = Timing { elapsed, photons, workers, ..Timing::default() };
         assert_eq!(timing.idle(), [0.25, 0.0]);
     }
 

@@ -106,7 +106,8 @@ fn perform<W: Send>(
     let audience = Audience { progress: &progress, watch: watch.as_ref() };
     audience.tell(|| started(&film, job.spp, &progress));
     let (passes, photons) = run_passes(job, &mut film, &mut records, &crew, &audience)?;
-    let timing = timing(&film, &records, crew, progress.start().elapsed(), passes);
+    let elapsed = [progress.start().elapsed(), photons.elapsed];
+    let timing = timing(&film, &records, crew, elapsed, passes);
     let outcome = outcome(film, job.spp, records, photons, timing);
     audience.tell(|| Event::Finished { interrupted: outcome.interrupted, timing: outcome.timing.clone() });
     Ok(outcome)
@@ -237,11 +238,12 @@ fn started(film: &Film, spp: u32, progress: &Arc<Progress>) -> Event {
     }
 }
 
-fn timing<W>(film: &Film, records: &[Record], crew: Crew<W>, elapsed: Duration, passes: u32) -> Timing {
+fn timing<W>(film: &Film, records: &[Record], crew: Crew<W>, [elapsed, photons]: [Duration; 2], passes: u32) -> Timing {
     let busy = |worker: Mutex<Worker<W>>| worker.into_inner().unwrap_or_else(PoisonError::into_inner).busy;
     let tiles = film.tiles.iter().zip(records);
     Timing {
         elapsed,
+        photons,
         passes,
         tiles: tiles.map(|(tile, record)| (tile.area, record.elapsed)).collect(),
         workers: crew.into_iter().map(busy).collect(),

@@ -68,7 +68,7 @@ pub struct Summary {
     /// What is wrong with the image apart from noise, in words.
     pub biases: Vec<String>,
     pub tiles: Option<TilesRecord>,
-    /// Share of the workers' time that was spent waiting.
+    /// Share of the workers' time for tiles that was spent waiting.
     pub idle: f64,
     /// `spp` or `interrupt`.
     pub stopped_by: &'static str,

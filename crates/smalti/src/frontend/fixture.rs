@@ -57,7 +57,8 @@ pub fn finished(interrupted: bool) -> Event {
     let tiles =
         Film::new(AREA, 16).tiles.iter().zip(1..).map(|(tile, n)| (tile.area, Duration::from_millis(n))).collect();
     let workers = vec![Duration::from_millis(990), Duration::from_millis(700)];
-    Event::Finished { interrupted, timing: Timing { elapsed: Duration::from_secs(1), passes: 7, tiles, workers } }
+    let timing = Timing { elapsed: Duration::from_secs(1), passes: 7, tiles, workers, ..Timing::default() };
+    Event::Finished { interrupted, timing }
 }
 
 /// What is known half-way: at 20 s half of the samples are done, worker 0 has a tile in hand, the others wait.
