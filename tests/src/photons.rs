@@ -30,7 +30,8 @@ pub fn trace(renderer: &Renderer, pass: &Pass, count: u32, round: u32) -> Traced
         .collect();
     let mut all = Traced::default();
     for batch in &batches {
-        all.photons.append(&batch.photons);
+        all.photons.places.extend_from_slice(&batch.photons.places);
+        all.photons.flux.extend_from_slice(&batch.photons.flux);
         all.account += &batch.account;
     }
     all

@@ -12,7 +12,7 @@
 use super::kd_tree::{BLOCK, Block, Tree};
 use super::surfaces::Group;
 use super::{Map, Surfaces, Tag};
-use crate::lanes::{Lanes, Rgb, V3};
+use crate::lanes::{Lanes, One, Rgb, V3};
 
 /// Photons this much of the radius above or below the disc do not count.
 pub const FLAT: f32 = 0.25;
@@ -189,7 +189,8 @@ impl Gather<'_> {
         let mut others = l.bitmask(flat & !own);
         while others != 0 {
             let k = others.trailing_zeros() as usize % 16;
-            let alike = self.surfaces.alike(Tag(tags[first + k].to_bits()), point.group, point.normal);
+            let tag = Tag(tags[first + k].to_bits());
+            let alike = self.surfaces.alike(One, tag, point.group, V3::splat(One, point.normal));
             seen |= u64::from(alike) << k;
             others &= others - 1;
         }

@@ -78,12 +78,6 @@ impl Photons {
     pub fn is_empty(&self) -> bool {
         self.places.is_empty()
     }
-
-    /// Adds `more` behind.
-    pub fn append(&mut self, more: &Self) {
-        self.places.extend_from_slice(&more.places);
-        self.flux.extend_from_slice(&more.flux);
-    }
 }
 
 /// On which primitive and which side of it a photon landed. It has [`Tag::BITS`] bits, so they are those of a

@@ -92,22 +92,11 @@ impl Surfaces {
 
     /// Whether a photon lies on the surface `group`, on a face that is turned about as `normal` (on the side that asks).
     #[inline(always)]
-    pub fn alike(&self, tag: Tag, group: u32, normal: [f32; 3]) -> bool {
-        let [x, y, z, number] = self.records[tag.prim() as usize];
-        // All of a sphere is one primitive: what lies on another side of it does not count.
-        if number.to_bits() != group || group >= SPHERE {
-            return false;
-        }
-        let turned = x * normal[0] + (y * normal[1] + z * normal[2]);
-        ALIKE <= if tag.outside() { turned } else { -turned }
-    }
-
-    /// The same for a photon as all lanes see it.
-    #[inline(always)]
-    pub fn all_alike<L: Lanes>(&self, l: L, tag: Tag, group: &Group<L>, normal: V3<L>) -> L::M {
+    pub fn alike<L: Lanes>(&self, l: L, tag: Tag, group: L::U, normal: V3<L>) -> L::M {
         let [x, y, z, number] = self.records[tag.prim() as usize];
         let turned = V3::splat(l, [x, y, z]).dot(l, normal);
-        let same = l.eq_u(group.number, l.u(number.to_bits())) & l.lt_u(group.number, l.u(SPHERE));
+        // All of a sphere is one primitive: what lies on another side of it does not count.
+        let same = l.eq_u(group, l.u(number.to_bits())) & l.lt_u(group, l.u(SPHERE));
         same & l.le(l.f(ALIKE), if tag.outside() { turned } else { -turned })
     }
 

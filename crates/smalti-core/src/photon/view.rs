@@ -20,6 +20,7 @@ type Sums = [[f64; 16]; 3];
 /// A packet of points as it looks at photons.
 struct Viewers<'a, L: Lanes> {
     query: &'a Query<L>,
+    quantity: Quantity,
     points: Points,
     group: Group<L>,
     /// Tags of photons on the points' own primitives and sides.
@@ -47,13 +48,13 @@ impl Gather<'_> {
     fn view<L: Lanes>(&self, l: L, query: &Query<L>, quantity: Quantity) -> Sums {
         let (group, own) = query.surface(l, self.surfaces);
         let points = Points::new(l, self.surfaces, query);
-        let viewers = Viewers { query, points, group, own, r2: query.radius * query.radius };
+        let viewers = Viewers { query, quantity, points, group, own, r2: query.radius * query.radius };
         let mut sums = [[0.0; 16]; 3];
         let mut left = l.bitmask(query.asks);
         while left != 0 {
             let tree = viewers.points.sub_maps[left.trailing_zeros() as usize % 16];
             let here = query.asks & l.eq_u(query.sub_map, l.u(tree));
-            self.walk_together(l, (&viewers, here), &self.map.trees[tree as usize], quantity, &mut sums);
+            self.walk_together(l, (&viewers, here), &self.map.trees[tree as usize], &mut sums);
             left &= !l.bitmask(here);
         }
         sums
@@ -61,14 +62,7 @@ impl Gather<'_> {
 
     /// Takes the lanes `asks` through a tree, from left to right, to every leaf that one of them has to look at.
     #[inline(always)]
-    fn walk_together<L: Lanes>(
-        &self,
-        l: L,
-        (viewers, asks): (&Viewers<'_, L>, L::M),
-        tree: &Tree,
-        quantity: Quantity,
-        sums: &mut Sums,
-    ) {
+    fn walk_together<L: Lanes>(&self, l: L, (viewers, asks): (&Viewers<'_, L>, L::M), tree: &Tree, sums: &mut Sums) {
         let leaves = tree.blocks.len();
         if leaves == 0 {
             return;
@@ -89,9 +83,9 @@ impl Gather<'_> {
             }
             let leaf = (tree, node - leaves);
             if l.bitmask(here).count_ones() <= FEW {
-                self.view_leaf_alone(l, (viewers, here), leaf, quantity, sums);
+                self.view_leaf_alone(l, (viewers, here), leaf, sums);
             } else {
-                self.view_leaf(l, (viewers, here), leaf, quantity, sums);
+                self.view_leaf(l, (viewers, here), leaf, sums);
             }
             if count == 0 {
                 break;
@@ -108,7 +102,6 @@ impl Gather<'_> {
         l: L,
         (viewers, asks): (&Viewers<'_, L>, L::M),
         (tree, leaf): (&Tree, usize),
-        quantity: Quantity,
         sums: &mut Sums,
     ) {
         let mut left = l.bitmask(asks);
@@ -119,7 +112,7 @@ impl Gather<'_> {
                 let (mut seen, _) = self.seen(l, &tree.blocks[leaf], first, &viewers.points.lanes[lane]);
                 while seen != 0 {
                     let at = leaf * BLOCK + first + seen.trailing_zeros() as usize % 16;
-                    let what = self.says(tree.flux[at], quantity);
+                    let what = self.says(tree.flux[at], viewers.quantity);
                     (0..3).for_each(|k| found[k] += what[k]);
                     seen &= seen - 1;
                 }
@@ -136,7 +129,6 @@ impl Gather<'_> {
         l: L,
         (viewers, asks): (&Viewers<'_, L>, L::M),
         (tree, leaf): (&Tree, usize),
-        quantity: Quantity,
         sums: &mut Sums,
     ) {
         let [xs, ys, zs, tags] = &tree.blocks[leaf];
@@ -154,9 +146,9 @@ impl Gather<'_> {
             let others = flat & !seen;
             if l.any(others) {
                 let normal = viewers.query.normal;
-                seen = seen | (others & self.surfaces.all_alike(l, Tag(tag.to_bits()), &viewers.group, normal));
+                seen = seen | (others & self.surfaces.alike(l, Tag(tag.to_bits()), viewers.group.number, normal));
             }
-            let what = self.says(*flux, quantity).map(
+            let what = self.says(*flux, viewers.quantity).map(
                 #[inline(always)]
                 |x| l.keep(seen, l.f(x)),
             );
