@@ -2,48 +2,20 @@
 
 use std::fs;
 use std::path::PathBuf;
-use std::process::{Command, Output};
+use std::process::Output;
 
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// A glass ball under a small lamp, with two cameras.
-const SCENE: &str = r#"
-[camera.front]
-eye = [0, -4, 1]
-look_at = [0, 0, 0.5]
-up = [0, 0, 1]
-fov = 60
+use crate::room::{SCENE, json, run, stderr};
 
-[camera.above]
-eye = [0, 0, 3]
-look_at = [0, 0, 0]
-up = [0, 1, 0]
-fov = 60
-
-[render]
-size = [24, 16]
-spp = 20
-photons = 4000
-
-[material.floor]
-lambert = { albedo = [0.7, 0.5, 0.3] }
-[material.glass]
-dielectric = { ior = 1.5 }
-
-[[polygon]]
-material = "floor"
-vertices = [[-3, -3, 0], [3, -3, 0], [3, 3, 0], [-3, 3, 0]]
-
-[[sphere]]
-material = "glass"
-centre = [0, 0, 0.6]
-radius = 0.5
-
-[[light.quad]]
-vertices = [[-0.2, -0.2, 4], [-0.2, 0.2, 4], [0.2, 0.2, 4], [0.2, -0.2, 4]]
-radiance = [50, 50, 50]
-"#;
+/// The room under a small lamp, whose caustics chance hardly finds.
+fn scene() -> String {
+    let [large, small] =
+        [1.0, 0.2].map(|r| format!("[[-{r}, -{r}, 4], [-{r}, {r}, 4], [{r}, {r}, 4], [{r}, -{r}, 4]]"));
+    let lit = SCENE.replace(&large, &small).replace("radiance = [5, 5, 5]", "radiance = [50, 50, 50]");
+    lit.replace("spp = 2\n", "spp = 20\nphotons = 4000\n")
+}
 
 /// A folder with the scene.
 struct Folder(TempDir);
@@ -51,7 +23,7 @@ struct Folder(TempDir);
 impl Folder {
     fn new() -> Self {
         let folder = tempfile::tempdir().unwrap();
-        fs::write(folder.path().join("room.toml"), SCENE).unwrap();
+        fs::write(folder.path().join("room.toml"), scene()).unwrap();
         Self(folder)
     }
 
@@ -60,22 +32,18 @@ impl Folder {
     }
 
     fn run(&self, flags: &str) -> Output {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_smalti"));
-        command.current_dir(self.0.path()).args(["render", "room.toml", "--json", "--progress", "none"]);
-        command.args(flags.split_whitespace()).output().unwrap()
+        run(&self.0, &format!("render room.toml --json --progress none {flags}"))
     }
 
     fn render(&self, flags: &str) -> Value {
-        let output = self.run(flags);
-        assert!(output.status.success(), "{flags}: {}", String::from_utf8_lossy(&output.stderr));
-        serde_json::from_slice(&output.stdout).unwrap()
+        json(&self.0, &format!("render room.toml --json --progress none {flags}"))
     }
 
     /// Asserts that the file is refused with this in the message, and nothing is made.
     fn refuses(&self, flags: &str, part: &str) {
         let before = fs::read_dir(self.0.path()).unwrap().count();
         let output = self.run(flags);
-        let message = String::from_utf8_lossy(&output.stderr);
+        let message = stderr(&output);
         assert_eq!(output.status.code(), Some(2), "{flags}: {message}");
         assert!(message.contains(part), "{flags}: {message}");
         assert_eq!(fs::read_dir(self.0.path()).unwrap().count(), before, "{flags}");
@@ -113,7 +81,7 @@ fn a_map_grows_with_the_rounds_that_are_asked() {
 #[test]
 fn without_a_number_of_photons_that_of_the_file_is_taken() {
     let folder = Folder::new();
-    let scene = SCENE.replace("photons = 4000\n", "");
+    let scene = scene().replace("photons = 4000\n", "");
     fs::write(folder.path("room.toml"), scene).unwrap();
     let first = folder.render("--photons 2000 --photon-map a.map");
     let second = folder.render("--size 300x200 --spp 1 --photon-map a.map");
@@ -129,7 +97,7 @@ fn what_does_not_fit_is_refused_with_the_reason() {
     folder.refuses("--photon-map a.map --integrator photon", "integrator is auto");
     folder.refuses("--photon-map a.map --integrator path", "asks no photons");
     folder.refuses("--photon-map a.map --radius 0.5", "radius is none");
-    fs::write(folder.path("room.toml"), SCENE.replace("radius = 0.5", "radius = 0.4")).unwrap();
+    fs::write(folder.path("room.toml"), scene().replace("radius = 0.5", "radius = 0.4")).unwrap();
     folder.refuses("--photon-map a.map", "scene");
     folder.refuses("--photon-map nowhere/a.map", "nowhere");
 }

@@ -1,0 +1,10 @@
+//! The program as it is typed: help, mistakes and their messages, exit codes, files, JSON.
+
+mod images;
+mod mistakes;
+mod photon_map;
+mod photons;
+mod render;
+mod room;
+#[cfg(unix)]
+mod unix;

@@ -1,0 +1,93 @@
+//! Signals, readers that go away, full disks.
+
+#[cfg(target_os = "linux")]
+use std::fs;
+use std::io::{BufRead, BufReader, Read};
+use std::process::{Child, ChildStderr, Command, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use serde_json::Value;
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::flag::register_conditional_shutdown;
+
+#[cfg(target_os = "linux")]
+use crate::room::stderr;
+use crate::room::{command, folder};
+
+const LONG: &str = "render room.toml --spp 1000000 --progress json --json -o a.pfm";
+
+/// Starts a render that takes long and waits until a pass of it is done.
+fn start(command: &mut Command) -> (Child, BufReader<ChildStderr>) {
+    // What this process ignores (in the background, under nohup) its children would ignore too; what it handles,
+    // they do not.
+    for signal in [SIGHUP, SIGINT, SIGTERM] {
+        register_conditional_shutdown(signal, 1, Arc::new(AtomicBool::new(true))).unwrap();
+    }
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut events = BufReader::new(child.stderr.take().unwrap());
+    let mut event = String::new();
+    while !event.contains("pass_finished") {
+        event.clear();
+        assert!(events.read_line(&mut event).unwrap() > 0, "it ended");
+    }
+    (child, events)
+}
+
+fn send(signal: &str, child: &Child) {
+    assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
+}
+
+#[test]
+fn an_interrupt_keeps_the_picture() {
+    for (signal, code) in [("-INT", 130), ("-TERM", 143), ("-HUP", 129)] {
+        let folder = folder();
+        let (child, mut events) = start(&mut command(folder.path(), LONG));
+        send(signal, &child);
+        let mut rest = String::new();
+        events.read_to_string(&mut rest).unwrap();
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(code), "{rest}");
+        assert!(rest.contains("interrupted by SIG"), "{rest}");
+        assert!(folder.path().join("a.pfm").is_file());
+        let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!((&summary["stopped_by"], &summary["target_reached"]), (&"interrupt".into(), &false.into()));
+        assert!(summary["samples_least"].as_u64() > Some(0));
+    }
+}
+
+#[test]
+fn an_ignored_hangup_stays_ignored() {
+    let folder = folder();
+    let script = format!("trap '' HUP; exec '{}' {LONG}", env!("CARGO_BIN_EXE_smalti"));
+    let mut shell = Command::new("sh");
+    let (child, mut events) = start(shell.current_dir(folder.path()).args(["-c", &script]));
+    send("-HUP", &child);
+    send("-TERM", &child);
+    let mut rest = String::new();
+    events.read_to_string(&mut rest).unwrap();
+    assert_eq!(child.wait_with_output().unwrap().status.code(), Some(143));
+    assert!(rest.contains("interrupted by SIGTERM"), "{rest}");
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_error() {
+    let folder = folder();
+    let mut child = command(folder.path(), "render room.toml --progress plain")
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop((child.stdout.take(), child.stderr.take()));
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+    assert!(folder.path().join("room.png").is_file());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_not_the_users_mistake() {
+    let folder = folder();
+    let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let output = command(folder.path(), "explain room.toml").stdout(full).stderr(Stdio::piped()).output().unwrap();
+    assert_eq!(output.status.code(), Some(74), "{}", stderr(&output));
+}
