@@ -61,20 +61,11 @@ pub struct RenderArgs {
     /// Brightness of PNG files in stops: every step doubles it; other formats hold linear radiance
     #[arg(long, value_name = "EV", value_parser = parse_finite, allow_negative_numbers = true)]
     pub exposure: Option<f64>,
-    /// Worker threads; 0: one for each logical core
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=MAX_THREADS))]
-    pub threads: u32,
     #[command(flatten)]
-    pub work: WorkArgs,
+    pub run: RunArgs,
     /// Keep photon maps in this file and take them from it: renders of the same scene, with any camera, share them
     #[arg(long, value_name = "FILE")]
     pub photon_map: Option<PathBuf>,
-    /// How progress is shown on stderr
-    #[arg(long, value_name = "HOW", default_value = "auto")]
-    pub progress: ProgressArg,
-    /// No progress and no summary; errors and warnings only
-    #[arg(short, long)]
-    pub quiet: bool,
     /// Exit with 1 if a sample was not finite
     #[arg(long)]
     pub strict: bool,
@@ -83,6 +74,22 @@ pub struct RenderArgs {
     pub json: bool,
     #[command(flatten)]
     pub image: ImageArgs,
+}
+
+/// How the machine is used, and what is told meanwhile.
+#[derive(Debug, Args)]
+pub struct RunArgs {
+    /// Worker threads; 0: one for each logical core
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=MAX_THREADS))]
+    pub threads: u32,
+    #[command(flatten)]
+    pub work: WorkArgs,
+    /// How progress is shown on stderr
+    #[arg(long, value_name = "HOW", default_value = "auto")]
+    pub progress: ProgressArg,
+    /// No progress and no summary; errors and warnings only
+    #[arg(short, long)]
+    pub quiet: bool,
 }
 
 /// More threads than any machine has; a number above is a slip.
@@ -268,17 +275,8 @@ pub struct PhotonsArgs {
     /// Brightness of PNG files in stops: every step doubles it; false colours do not change
     #[arg(long, value_name = "EV", value_parser = parse_finite, allow_negative_numbers = true)]
     pub exposure: Option<f64>,
-    /// Worker threads; 0: one for each logical core
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=MAX_THREADS))]
-    pub threads: u32,
     #[command(flatten)]
-    pub work: WorkArgs,
-    /// How progress is shown on stderr
-    #[arg(long, value_name = "HOW", default_value = "auto")]
-    pub progress: ProgressArg,
-    /// No progress and no summary; errors and warnings only
-    #[arg(short, long)]
-    pub quiet: bool,
+    pub run: RunArgs,
     /// Print the summary as one JSON object on stdout
     #[arg(long)]
     pub json: bool,

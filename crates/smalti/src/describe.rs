@@ -76,25 +76,26 @@ fn percent(share: f64) -> String {
 fn time(summary: &Summary) -> String {
     format!(
         "{:.3} s: setup {:.3}, render {:.3}, write {:.3}; {} threads, {}",
-        summary.wall_seconds,
-        summary.setup_seconds,
-        summary.render_seconds,
-        summary.write_seconds,
-        summary.threads,
-        summary.simd
+        summary.run.wall_seconds,
+        summary.run.setup_seconds,
+        summary.run.render_seconds,
+        summary.run.write_seconds,
+        summary.run.threads,
+        summary.run.simd
     )
 }
 
 fn rays(summary: &Summary) -> String {
     let rays = &summary.rays;
-    let per_second = rays.all() as f64 / summary.render_seconds;
+    let per_second = rays.all() as f64 / summary.run.render_seconds;
     let speed = if per_second.is_finite() { format!("{:.1} M a second; ", per_second / 1e6) } else { String::new() };
     let length = summary.mean_path_length.map(|length| format!("; mean path length {length:.2}")).unwrap_or_default();
     format!("{speed}{} camera, {} scattered, {} shadow{length}", rays.camera, rays.scattered, rays.shadow)
 }
 
 fn photons(summary: &Summary) -> String {
-    let Summary { photons_emitted: emitted, photons_stored: stored, photon_bytes, photon_seconds, .. } = summary;
+    let Summary { photons_emitted: emitted, photons_stored: stored, photon_bytes, .. } = summary;
+    let photon_seconds = summary.run.photon_seconds;
     let size = in_words(*photon_bytes);
     match (emitted, stored) {
         (0, 0) => String::new(),

@@ -16,6 +16,11 @@ pub enum Status {
 }
 
 impl Status {
+    /// Of work that stopped early if a signal asked for it, and ended otherwise.
+    pub fn of(interrupted: bool, signal: Option<i32>) -> Self {
+        signal.filter(|_| interrupted).map_or(Status::Done, Status::Interrupted)
+    }
+
     /// The code for the shell.
     pub fn code(self) -> u8 {
         match self {

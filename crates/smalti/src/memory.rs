@@ -12,13 +12,12 @@ pub fn film_bytes(area: Rect) -> Option<u64> {
 
 /// Bytes that the photon maps of a render may take at most while they are built.
 pub fn photon_bytes(settings: &Settings) -> u64 {
-    let (maps, stored) = match settings.integrator {
-        Integrator::Auto => (1, 1),
-        // The map of all light stores a photon at every diffuse bounce.
-        Integrator::Photon => (2, 4),
-        Integrator::Path | Integrator::Whitted => return 0,
+    let maps: &[Kind] = match settings.integrator {
+        Integrator::Auto => &[Kind::Caustic],
+        Integrator::Photon => &[Kind::Caustic, Kind::Global],
+        Integrator::Path | Integrator::Whitted => &[],
     };
-    u64::from(settings.photons_of_round()) * maps * stored * 2 * Photons::BYTES
+    maps.iter().map(|map| map_bytes(*map, settings.photons_of_round())).sum()
 }
 
 /// Bytes that a map of `photons` emitted ones may take at most while it is built.
@@ -26,7 +25,7 @@ pub fn map_bytes(map: Kind, photons: u32) -> u64 {
     let stored = match map {
         Kind::Caustic | Kind::Shadow => 1,
         // A photon is stored at every diffuse bounce.
-        Kind::Global => 6,
+        Kind::Global => 7,
     };
     u64::from(photons) * stored * 2 * Photons::BYTES
 }

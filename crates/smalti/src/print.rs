@@ -36,6 +36,19 @@ pub fn json(value: &impl Serialize) -> Result<(), Failure> {
     result(&(serde_json::to_string(value).map_err(Failure::bug)? + "\n"))
 }
 
+/// Prints an account on stdout as was asked for: as JSON, or in words unless it is to be quiet.
+pub fn account<T: Serialize>(
+    value: &T,
+    describe: impl Fn(&T) -> String,
+    (as_json, quiet): (bool, bool),
+) -> Result<(), Failure> {
+    match (as_json, quiet) {
+        (true, _) => json(value),
+        (false, false) => result(&describe(value)),
+        (false, true) => Ok(()),
+    }
+}
+
 /// Messages on stderr: as text, or as JSON lines beside JSON progress.
 #[derive(Clone, Copy, Debug)]
 pub struct Messages {

@@ -1,9 +1,12 @@
-//! What several commands' JSON objects have in common: the settings of a render under their documented names.
+//! What several commands' JSON objects have in common, under its documented names: the settings of a render, which
+//! picture it is, and how the machine was used.
 
 use std::fmt::{self, Display, Formatter};
+use std::time::Duration;
 
 use serde::Serialize;
 use smalti_core::settings::{Rect, Settings};
+use smalti_scheduler::Outcome;
 
 use crate::job::Job;
 
@@ -14,14 +17,8 @@ pub struct SettingsRecord {
     pub sampler: &'static str,
     pub fresnel: &'static str,
     pub jitter: bool,
-    /// Name of the camera; null: the only one, which has none.
-    pub camera: Option<String>,
-    /// Size of the whole image.
-    pub width: u32,
-    pub height: u32,
-    /// Column, row, width and height of the part that is rendered; null: all of it.
-    pub crop: Option<[u32; 4]>,
-    pub spp: u32,
+    #[serde(flatten)]
+    pub picture: PictureRecord,
     pub shadow_rays: u32,
     /// Null: roulette alone ends paths.
     pub max_bounces: Option<u32>,
@@ -40,11 +37,7 @@ pub fn settings(job: &Job) -> SettingsRecord {
         sampler: settings.sampler.name(),
         fresnel: settings.fresnel.name(),
         jitter: settings.jitter,
-        camera: Some(job.camera().to_owned()).filter(|name| !name.is_empty()),
-        width: settings.width,
-        height: settings.height,
-        crop: settings.crop.map(|Rect { x, y, width, height }| [x, y, width, height]),
-        spp: settings.spp,
+        picture: PictureRecord::new(job),
         shadow_rays: settings.shadow_rays,
         max_bounces: settings.max_bounces,
         seed: settings.seed,
@@ -53,11 +46,82 @@ pub fn settings(job: &Job) -> SettingsRecord {
     }
 }
 
+/// Which picture of a scene it is.
+#[derive(Debug, Serialize)]
+pub struct PictureRecord {
+    /// Name of the camera; null: the only one, which has none.
+    pub camera: Option<String>,
+    /// Size of the whole image.
+    pub width: u32,
+    pub height: u32,
+    /// Column, row, width and height of the part that is rendered; null: all of it.
+    pub crop: Option<[u32; 4]>,
+    pub spp: u32,
+}
+
+impl PictureRecord {
+    /// That of a job.
+    pub fn new(job: &Job) -> Self {
+        let settings = &job.settings;
+        Self {
+            camera: Some(job.camera().to_owned()).filter(|name| !name.is_empty()),
+            width: settings.width,
+            height: settings.height,
+            crop: settings.crop.map(|Rect { x, y, width, height }| [x, y, width, height]),
+            spp: settings.spp,
+        }
+    }
+}
+
+/// How the machine was used.
+#[derive(Clone, Copy, Debug)]
+pub struct Work {
+    /// Worker threads.
+    pub threads: usize,
+    /// Side of a tile.
+    pub tile: u32,
+    /// From the start of the process to the first sample.
+    pub setup: Duration,
+}
+
+/// How the machine was used and for how long, seconds.
+#[derive(Debug, Serialize)]
+pub struct RunRecord {
+    pub threads: usize,
+    pub simd: &'static str,
+    pub tile: u32,
+    /// Reading, compiling and building, from the start of the process.
+    pub setup_seconds: f64,
+    /// Emitting, tracing and storing photons, within `render_seconds`.
+    pub photon_seconds: f64,
+    pub render_seconds: f64,
+    pub write_seconds: f64,
+    /// From the start of the process to the end of writing.
+    pub wall_seconds: f64,
+}
+
+impl RunRecord {
+    /// Before anything is written.
+    pub fn new(job: &Job, work: Work, outcome: &Outcome) -> Self {
+        Self {
+            threads: work.threads,
+            simd: job.level.name(),
+            tile: work.tile,
+            setup_seconds: work.setup.as_secs_f64(),
+            photon_seconds: outcome.photons.elapsed.as_secs_f64(),
+            render_seconds: outcome.timing.elapsed.as_secs_f64(),
+            write_seconds: 0.0,
+            wall_seconds: 0.0,
+        }
+    }
+}
+
 /// In a few words, without the samples: `path, 800x800, shadow rays 1, sobol, seed 0`.
 impl Display for SettingsRecord {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
-        write!(f, "{}, {}x{}", self.integrator, self.width, self.height)?;
-        if let Some([x, y, width, height]) = self.crop {
+        let PictureRecord { width, height, crop, .. } = self.picture;
+        write!(f, "{}, {width}x{height}", self.integrator)?;
+        if let Some([x, y, width, height]) = crop {
             write!(f, " at {x},{y},{width},{height}")?;
         }
         write!(f, ", shadow rays {}, {}, seed {}", self.shadow_rays, self.sampler, self.seed)

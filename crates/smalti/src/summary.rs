@@ -1,7 +1,5 @@
 //! The account of a render: one record, shown as text or as JSON. Its field names are a promise.
 
-use std::time::Duration;
-
 use serde::Serialize;
 use smalti_core::film::{Film, Image, ROUND};
 use smalti_core::plan::LEAST_CONTRIBUTION;
@@ -14,7 +12,7 @@ use smalti_scheduler::{Outcome, Timing};
 
 use crate::error_statement;
 use crate::job::Job;
-use crate::record::{self, SettingsRecord};
+use crate::record::{self, RunRecord, SettingsRecord, Work};
 use crate::reproduce;
 
 /// Everything that is told of a render. Times in seconds; what does not exist is null.
@@ -30,17 +28,8 @@ pub struct Summary {
     pub samples_most: u32,
     /// Complete rounds of every pixel: what the error is judged by.
     pub rounds: u32,
-    pub threads: usize,
-    pub simd: &'static str,
-    pub tile: u32,
-    /// Reading, compiling and building, from the start of the process.
-    pub setup_seconds: f64,
-    /// Emitting, tracing and storing photons, within `render_seconds`.
-    pub photon_seconds: f64,
-    pub render_seconds: f64,
-    pub write_seconds: f64,
-    /// From the start of the process to the end of writing.
-    pub wall_seconds: f64,
+    #[serde(flatten)]
+    pub run: RunRecord,
     /// Samples over all pixels.
     pub samples: u64,
     pub rays: RayRecord,
@@ -132,17 +121,6 @@ pub fn develop(film: &Film) -> Developed {
     Developed { image, error, bias, samples: film.samples() }
 }
 
-/// How the machine was used.
-#[derive(Clone, Copy, Debug)]
-pub struct Work {
-    /// Worker threads.
-    pub threads: usize,
-    /// Side of a tile.
-    pub tile: u32,
-    /// From the start of the process to the first sample.
-    pub setup: Duration,
-}
-
 /// The summary before anything is written; the outcome's film is not looked at.
 pub fn summary(job: &Job, work: Work, outcome: &Outcome, developed: &Developed) -> Summary {
     let (least, most) = developed.samples;
@@ -156,14 +134,7 @@ pub fn summary(job: &Job, work: Work, outcome: &Outcome, developed: &Developed) 
         samples_least: least,
         samples_most: most,
         rounds: least / ROUND,
-        threads: work.threads,
-        simd: job.level.name(),
-        tile: work.tile,
-        setup_seconds: work.setup.as_secs_f64(),
-        photon_seconds: outcome.photons.elapsed.as_secs_f64(),
-        render_seconds: outcome.timing.elapsed.as_secs_f64(),
-        write_seconds: 0.0,
-        wall_seconds: 0.0,
+        run: RunRecord::new(job, work, outcome),
         samples: outcome.samples,
         rays: RayRecord { camera, scattered, shadow },
         mean_path_length: (camera > 0).then(|| (camera + scattered) as f64 / camera as f64),
@@ -214,7 +185,7 @@ fn lacks_point_caustics(settings: &Settings, world: &World) -> bool {
     !photons
         && !world.point_lights.is_empty()
         && has(|material| matches!(material, Material::Lambert { .. }))
-        && has(|material| matches!(material, Material::Mirror { .. } | Material::Dielectric { .. }))
+        && has(Material::is_specular)
 }
 
 /// What more samples would not mend.

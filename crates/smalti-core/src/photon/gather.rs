@@ -33,17 +33,6 @@ pub struct Query<L: Lanes> {
     pub radius: L::F,
 }
 
-impl<L: Lanes> Query<L> {
-    /// The surfaces that the points lie on, and the tags of photons on their own primitives and sides.
-    #[inline(always)]
-    pub fn surface(&self, l: L, surfaces: &Surfaces) -> (Group<L>, L::U) {
-        let prim = l.select_u(self.asks, self.prim, l.u(0));
-        let group = surfaces.group(l, prim);
-        let outside = surfaces.is_outside(l, &group, (self.point, self.normal));
-        (group, prim | l.select_u(outside, l.u(Tag::OUTSIDE), l.u(0)))
-    }
-}
-
 /// What was found.
 #[derive(Clone, Copy)]
 pub struct Found<L: Lanes> {
@@ -88,11 +77,18 @@ impl Gather<'_> {
         Found { irradiance: found.irradiance.scale(by / whole), inner: found.inner.scale(by / half) }
     }
 
+    /// The surfaces that the points lie on, and the tags of photons on their own primitives and sides.
+    #[inline(always)]
+    pub fn side<L: Lanes>(&self, l: L, query: &Query<L>) -> (Group<L>, L::U) {
+        let prim = l.select_u(query.asks, query.prim, l.u(0));
+        self.surfaces.side(l, prim, (query.point, query.normal))
+    }
+
     /// Sums for every lane.
     #[inline(always)]
     fn sums<L: Lanes>(&self, l: L, query: &Query<L>) -> Sums {
         let mut sums = [[0.0; 16]; 6];
-        let points = Points::new(l, self.surfaces, query);
+        let points = Points::new(l, query, self.side(l, query));
         let mut left = l.bitmask(query.asks);
         // Points of one packet mostly ask the same sub-map.
         while left != 0 {
@@ -220,10 +216,9 @@ pub struct Points {
 }
 
 impl Points {
-    /// The points of a query.
+    /// The points of a query, on their surfaces and sides.
     #[inline(always)]
-    pub fn new<L: Lanes>(l: L, surfaces: &Surfaces, query: &Query<L>) -> Self {
-        let (group, own) = query.surface(l, surfaces);
+    pub fn new<L: Lanes>(l: L, query: &Query<L>, (group, own): (Group<L>, L::U)) -> Self {
         let mut points = Self { lanes: [Point::default(); 16], sub_maps: [0; 16] };
         l.store_u(query.sub_map, &mut points.sub_maps);
         let (mut floats, mut words, mut radii) = ([[0.0; 16]; 6], [[0; 16]; 2], [0.0; 16]);

@@ -165,7 +165,7 @@ impl Renderer {
         Visibility::new(collected(&self.traced(pass, pass.batches(AHEAD), progress)).0)
     }
 
-    /// One tree is built after the other, so that little more is held than the trees.
+    /// Trees are built as workers become free, so that little more is held than the trees.
     fn map(&self, pass: &Pass, round: u32, progress: &AtomicU64) -> Map {
         let trees = self.plan().trees(self.settings());
         let sub_maps = |tree: u32| tree * SUB_MAPS / trees..(tree + 1) * SUB_MAPS / trees;

@@ -82,9 +82,18 @@ impl Surfaces {
         Group { number: l.bits(number), normal: V3::new(x, y, z) }
     }
 
+    /// The surface of a primitive, and the tag of photons on it that are on the side of the normal of `place` (a point and
+    /// its normal).
+    #[inline(always)]
+    pub fn side<L: Lanes>(&self, l: L, prim: L::U, place: (V3<L>, V3<L>)) -> (Group<L>, L::U) {
+        let group = self.group(l, prim);
+        let outside = self.is_outside(l, &group, place);
+        (group, prim | l.select_u(outside, l.u(Tag::OUTSIDE), l.u(0)))
+    }
+
     /// Lanes where `normal` at `point` is on the side of the primitive's own normal.
     #[inline(always)]
-    pub fn is_outside<L: Lanes>(&self, l: L, group: &Group<L>, (point, normal): (V3<L>, V3<L>)) -> L::M {
+    fn is_outside<L: Lanes>(&self, l: L, group: &Group<L>, (point, normal): (V3<L>, V3<L>)) -> L::M {
         let is_sphere = l.lt_u(l.u(SPHERE - 1), group.number);
         let own = V3::select(l, is_sphere, point - group.normal, group.normal);
         l.lt(l.f(0.0), normal.dot(l, own))

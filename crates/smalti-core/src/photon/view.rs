@@ -46,8 +46,8 @@ impl Gather<'_> {
     /// Sums over the trees that the points ask.
     #[inline(always)]
     fn view<L: Lanes>(&self, l: L, query: &Query<L>, quantity: Quantity) -> Sums {
-        let (group, own) = query.surface(l, self.surfaces);
-        let points = Points::new(l, self.surfaces, query);
+        let (group, own) = self.side(l, query);
+        let points = Points::new(l, query, (group, own));
         let viewers = Viewers { query, quantity, points, group, own, r2: query.radius * query.radius };
         let mut sums = [[0.0; 16]; 3];
         let mut left = l.bitmask(query.asks);

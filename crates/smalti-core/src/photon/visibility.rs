@@ -74,8 +74,7 @@ impl Visibility {
             return Decided { seen: nothing, hidden: nothing };
         }
         let [tag, seen, hidden, _] = l.gather_record(&self.leaves, self.tree.leaf(l, place.0));
-        let outside = surfaces.is_outside(l, &surfaces.group(l, prim), place);
-        let own = prim | l.select_u(outside, l.u(Tag::OUTSIDE), nothing);
+        let (_, own) = surfaces.side(l, prim, place);
         let same = l.eq_u(own, l.bits(tag));
         Decided { seen: l.select_u(same, l.bits(seen), nothing), hidden: l.select_u(same, l.bits(hidden), nothing) }
     }

@@ -27,6 +27,16 @@ pub struct World {
     pub cameras: Vec<Camera>,
 }
 
+impl World {
+    /// Number of polygons, spheres and meshes that emit.
+    pub fn emitting(&self) -> usize {
+        let polygons = self.polygons.iter().filter(|polygon| polygon.radiance.is_some()).count();
+        let spheres = self.spheres.iter().filter(|sphere| sphere.radiance.is_some()).count();
+        let meshes = self.meshes.iter().filter(|mesh| mesh.radiance.is_some()).count();
+        polygons + spheres + meshes
+    }
+}
+
 /// How a surface scatters light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Material {
@@ -45,6 +55,13 @@ pub enum Material {
         /// Index of refraction of the inside, > 0.
         ior: f64,
     },
+}
+
+impl Material {
+    /// Whether it sends all light one or two ways, and so casts caustics.
+    pub fn is_specular(&self) -> bool {
+        matches!(self, Self::Mirror { .. } | Self::Dielectric { .. })
+    }
 }
 
 /// A planar convex polygon with at least three vertices. Its normal follows the right-hand rule.

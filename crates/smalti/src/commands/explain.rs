@@ -95,9 +95,6 @@ fn available() -> Vec<&'static str> {
 
 fn contents(world: &World) -> Contents {
     let materials = |wanted: fn(&Material) -> bool| world.materials.iter().filter(|material| wanted(material)).count();
-    let emitting = world.polygons.iter().filter(|polygon| polygon.radiance.is_some()).count()
-        + world.spheres.iter().filter(|sphere| sphere.radiance.is_some()).count()
-        + world.meshes.iter().filter(|mesh| mesh.radiance.is_some()).count();
     Contents {
         lambert: materials(|material| matches!(material, Material::Lambert { .. })),
         mirror: materials(|material| matches!(material, Material::Mirror { .. })),
@@ -106,7 +103,7 @@ fn contents(world: &World) -> Contents {
         spheres: world.spheres.len(),
         meshes: world.meshes.len(),
         triangles: world.meshes.iter().map(|mesh| mesh.faces.len()).sum(),
-        area_lights: emitting,
+        area_lights: world.emitting(),
         point_lights: world.point_lights.len(),
         environment: world.environment.is_some(),
         cameras: world.cameras.len(),

@@ -38,8 +38,8 @@ pub fn run(cli: &Cli, start: Instant) -> ExitCode {
 /// With `--progress json` stderr holds JSON lines only.
 fn wants_json_lines(command: &Command) -> bool {
     match command {
-        Command::Render(args) => args.progress == ProgressArg::Json,
-        Command::Photons(args) => args.progress == ProgressArg::Json,
+        Command::Render(args) => args.run.progress == ProgressArg::Json,
+        Command::Photons(args) => args.run.progress == ProgressArg::Json,
         _ => false,
     }
 }

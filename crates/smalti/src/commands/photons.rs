@@ -10,59 +10,49 @@ use smalti_core::render::Renderer;
 use smalti_image::{Format, WriteError};
 use smalti_scheduler::Outcome;
 
-use super::render::interrupted;
+use super::render;
 use crate::args::{PhotonsArgs, ProgressArg, When};
 use crate::exit::{Failure, Status};
 use crate::frontend::{self, Mode, Title};
 use crate::interrupt::{self, Interrupt};
 use crate::photons::{Picture, Request, Summary, describe, develop, provenance, summary};
 use crate::print::{self, Messages};
-use crate::summary::Work;
+use crate::record::Work;
 use crate::{memory, outputs};
 
 /// Runs the command. `start` is when the process began.
 pub fn run(args: &PhotonsArgs, colour: When, start: Instant) -> Result<Status, Failure> {
-    let messages = Messages { json: args.progress == ProgressArg::Json };
+    let messages = Messages { json: args.run.progress == ProgressArg::Json };
     let outputs = outputs::checked(&args.outputs, &args.scene, "-photons.png")?;
     let request = Request::load(args)?;
     request.job.notes.iter().for_each(|note| messages.note(note));
-    let pool = smalti_scheduler::pool(args.threads as usize).map_err(Failure::user)?;
+    let pool = smalti_scheduler::pool(args.run.threads as usize).map_err(Failure::user)?;
     let renderer = pool.install(|| request.renderer())?;
     let interrupt = interrupt::listen(frontend::restore).map_err(Failure::bug)?;
-    let tile = request.job.tile(args.work.tile);
+    let tile = request.job.tile(args.run.work.tile);
     let work = Work { threads: pool.current_num_threads(), tile, setup: start.elapsed() };
 
-    let mode = Mode::choose(args.progress, args.quiet, colour);
+    let mode = Mode::choose(args.run.progress, args.run.quiet, colour);
     let mut outcome = perform(&renderer, &pool, &interrupt, work, mode, title(args, &request, work))?;
     let samples = outcome.film.samples();
     if let Some(signal) = interrupt.signal().filter(|_| outcome.interrupted) {
-        messages.warning(&interrupted(signal, samples, request.job.settings.spp));
+        messages.warning(&render::interrupted(signal, samples, request.job.settings.spp));
     }
     if samples.1 > 0 {
         let picture = develop(outcome.film.develop(), request.colour);
         outcome.film.tiles = Vec::new();
         let mut summary = summary(&request, work, &outcome, &picture, renderer.scene().frame.scale);
         let written = write(&outputs, &picture, &mut summary, request.job.exposure(args.exposure));
-        summary.wall_seconds = start.elapsed().as_secs_f64();
+        summary.run.wall_seconds = start.elapsed().as_secs_f64();
         tell(args, &summary, messages)?;
         written?;
     }
-    Ok(status(&outcome, &interrupt))
+    Ok(Status::of(outcome.interrupted, interrupt.signal()))
 }
 
 fn title(args: &PhotonsArgs, request: &Request, work: Work) -> Title {
-    let area = request.job.settings.area();
-    Title {
-        scene: request.job.path.display().to_string(),
-        size: (area.width, area.height),
-        spp: request.job.settings.spp,
-        integrator: request.title(),
-        threads: work.threads,
-        level: request.job.level.name(),
-        setup: work.setup,
-        exposure: request.job.exposure(args.exposure),
-        pictures: request.colour.quantity() == Quantity::Radiance,
-    }
+    let pictures = request.colour.quantity() == Quantity::Radiance;
+    Title { integrator: request.title(), pictures, ..render::title(&request.job, work, args.exposure) }
 }
 
 /// Emits the photons and shows them while a display tells of it.
@@ -94,7 +84,7 @@ fn write(outputs: &[PathBuf], picture: &Picture, summary: &mut Summary, exposure
         }
     };
     let written = outputs::write_all(outputs, &mut summary.outputs, write);
-    summary.write_seconds = start.elapsed().as_secs_f64();
+    summary.run.write_seconds = start.elapsed().as_secs_f64();
     summary.peak_bytes = memory::peak_bytes();
     written
 }
@@ -104,16 +94,5 @@ fn tell(args: &PhotonsArgs, summary: &Summary, messages: Messages) -> Result<(),
     if summary.nonfinite > 0 {
         messages.warning(&format!("{} samples were not finite and count as 0", summary.nonfinite));
     }
-    match (args.json, args.quiet) {
-        (true, _) => print::json(summary),
-        (false, false) => print::result(&describe(summary)),
-        (false, true) => Ok(()),
-    }
-}
-
-fn status(outcome: &Outcome, interrupt: &Interrupt) -> Status {
-    match interrupt.signal() {
-        Some(signal) if outcome.interrupted => Status::Interrupted(signal),
-        _ => Status::Done,
-    }
+    print::account(summary, describe, (args.json, args.run.quiet))
 }

@@ -16,25 +16,26 @@ use crate::interrupt::{self, Interrupt};
 use crate::job::Job;
 use crate::photon_map::PhotonMap;
 use crate::print::{self, Messages};
-use crate::summary::{Developed, Summary, Work, develop, summary};
+use crate::record::Work;
+use crate::summary::{Developed, Summary, develop, summary};
 use crate::{error_statement, memory, outputs, photon_map, provenance};
 
 /// Runs the command. `start` is when the process began.
 pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Failure> {
-    let messages = Messages { json: args.progress == ProgressArg::Json };
+    let messages = Messages { json: args.run.progress == ProgressArg::Json };
     let outputs = outputs::checked(&args.outputs, &args.scene, ".png")?;
-    let mut job = Job::load(&args.scene, &args.image, args.work.simd.simd)?;
+    let mut job = Job::load(&args.scene, &args.image, args.run.work.simd.simd)?;
     let photon_map = args.photon_map.as_deref().map(|path| open_photon_map(path, &mut job)).transpose()?;
     job.notes.iter().for_each(|note| messages.note(note));
-    let pool = smalti_scheduler::pool(args.threads as usize).map_err(Failure::user)?;
+    let pool = smalti_scheduler::pool(args.run.threads as usize).map_err(Failure::user)?;
     let renderer = pool.install(|| job.renderer())?;
     let interrupt = interrupt::listen(frontend::restore).map_err(Failure::bug)?;
-    let work = Work { threads: pool.current_num_threads(), tile: job.tile(args.work.tile), setup: start.elapsed() };
+    let work = Work { threads: pool.current_num_threads(), tile: job.tile(args.run.work.tile), setup: start.elapsed() };
 
-    let mode = Mode::choose(args.progress, args.quiet, colour);
+    let mode = Mode::choose(args.run.progress, args.run.quiet, colour);
     let film = Film::new(job.settings.area(), work.tile);
     let workers = Workers { pool: &pool, interrupt: &interrupt, photon_map: photon_map.as_ref() };
-    let mut outcome = perform(&renderer, film, &workers, mode, title(args, &job, work))?;
+    let mut outcome = perform(&renderer, film, &workers, mode, title(&job, work, args.exposure))?;
     let kept = photon_map.map_or(Ok(()), PhotonMap::finish);
     let developed = pool.install(|| develop(&outcome.film));
     // Encoding needs memory too: the film, six times as large as the image, makes room.
@@ -45,14 +46,15 @@ pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Fa
     if developed.samples.1 > 0 {
         let mut summary = summary(&job, work, &outcome, &developed);
         let written = write(&outputs, &developed, &mut summary, job.exposure(args.exposure));
-        summary.wall_seconds = start.elapsed().as_secs_f64();
+        summary.run.wall_seconds = start.elapsed().as_secs_f64();
         tell(args, &summary, messages)?;
         written.and(kept)?;
     }
     Ok(status(args.strict, &outcome, &interrupt))
 }
 
-fn title(args: &RenderArgs, job: &Job, work: Work) -> Title {
+/// What a display says of a job, of which it shows the picture so far.
+pub(super) fn title(job: &Job, work: Work, exposure: Option<f64>) -> Title {
     let area = job.settings.area();
     Title {
         scene: job.path.display().to_string(),
@@ -62,7 +64,7 @@ fn title(args: &RenderArgs, job: &Job, work: Work) -> Title {
         threads: work.threads,
         level: job.level.name(),
         setup: work.setup,
-        exposure: job.exposure(args.exposure),
+        exposure: job.exposure(exposure),
         pictures: true,
     }
 }
@@ -110,7 +112,7 @@ fn write(outputs: &[PathBuf], developed: &Developed, summary: &mut Summary, expo
     let written = outputs::write_all(outputs, &mut summary.outputs, |path| {
         smalti_image::write(path, &developed.image, &provenance, exposure)
     });
-    summary.write_seconds = start.elapsed().as_secs_f64();
+    summary.run.write_seconds = start.elapsed().as_secs_f64();
     summary.peak_bytes = memory::peak_bytes();
     written
 }
@@ -121,18 +123,13 @@ fn tell(args: &RenderArgs, summary: &Summary, messages: Messages) -> Result<(), 
         let count = summary.nonfinite;
         messages.warning(&format!("{count} samples were not finite and count as 0; the first: {}", first.replay));
     }
-    match (args.json, args.quiet) {
-        (true, _) => print::json(summary),
-        (false, false) => print::result(&describe(summary)),
-        (false, true) => Ok(()),
-    }
+    print::account(summary, describe, (args.json, args.run.quiet))
 }
 
 fn status(strict: bool, outcome: &Outcome, interrupt: &Interrupt) -> Status {
-    match interrupt.signal() {
-        Some(signal) if outcome.interrupted => Status::Interrupted(signal),
-        _ if strict && outcome.rejected.count > 0 => Status::CheckFailed,
-        _ => Status::Done,
+    match Status::of(outcome.interrupted, interrupt.signal()) {
+        Status::Done if strict && outcome.rejected.count > 0 => Status::CheckFailed,
+        status => status,
     }
 }
 

@@ -8,6 +8,7 @@ use super::picture::Scale;
 use super::ramp;
 use super::summary::{FluxRecord, Summary};
 use crate::memory::in_words;
+use crate::record::{PictureRecord, RunRecord};
 use crate::table::{Align, table};
 
 /// The summary as text.
@@ -29,8 +30,9 @@ pub fn describe(summary: &Summary) -> String {
 }
 
 fn image(summary: &Summary) -> String {
-    let Summary { map, colour, width, height, spp, seed, mean, .. } = summary;
-    let part = summary.crop.map(|[x, y, w, h]| format!(" at {x},{y},{w},{h}")).unwrap_or_default();
+    let Summary { map, colour, seed, mean, .. } = summary;
+    let PictureRecord { width, height, crop, spp, .. } = summary.picture;
+    let part = crop.map(|[x, y, w, h]| format!(" at {x},{y},{w},{h}")).unwrap_or_default();
     let mean = match summary.scale {
         Some(scale) => format!("{} {}", rounded(mean[1]), scale.unit),
         None => mean.map(|mean| format!("{mean:.5}")).join(" "),
@@ -65,12 +67,12 @@ fn radius(summary: &Summary) -> String {
 }
 
 fn time(summary: &Summary) -> String {
-    let Summary { wall_seconds, setup_seconds, photon_seconds, render_seconds, write_seconds, .. } = summary;
+    let RunRecord { wall_seconds, setup_seconds, photon_seconds, render_seconds, write_seconds, threads, simd, .. } =
+        summary.run;
     let picture = render_seconds - photon_seconds;
     format!(
         "{wall_seconds:.3} s: setup {setup_seconds:.3}, photons {photon_seconds:.3}, picture {picture:.3}, \
-         write {write_seconds:.3}; {} threads, {}",
-        summary.threads, summary.simd
+         write {write_seconds:.3}; {threads} threads, {simd}"
     )
 }
 

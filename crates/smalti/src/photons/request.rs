@@ -4,7 +4,6 @@ use serde::Serialize;
 use smalti_core::photon::{Kind, Show};
 use smalti_core::render::Renderer;
 use smalti_core::scene::World;
-use smalti_core::scene::world::Material;
 use smalti_core::settings::{Integrator, Settings};
 
 use crate::args::{ImageArgs, PhotonImageArgs, PhotonsArgs};
@@ -44,7 +43,7 @@ pub struct Lights {
 impl Request {
     /// Reads the scene and applies the flags.
     pub fn load(args: &PhotonsArgs) -> Result<Self, Failure> {
-        let mut job = Job::load(&args.scene, &flags(&args.image), args.work.simd.simd)?;
+        let mut job = Job::load(&args.scene, &flags(&args.image), args.run.work.simd.simd)?;
         let lights = Lights::of(&job.world);
         let usual = if has_casters(&job.world) { MapArg::Caustic } else { MapArg::Global };
         let map = args.image.map.unwrap_or(usual);
@@ -74,10 +73,7 @@ impl Request {
 
 impl Lights {
     fn of(world: &World) -> Self {
-        let polygons = world.polygons.iter().filter(|polygon| polygon.radiance.is_some()).count();
-        let spheres = world.spheres.iter().filter(|sphere| sphere.radiance.is_some()).count();
-        let meshes = world.meshes.iter().filter(|mesh| mesh.radiance.is_some()).count();
-        Self { surfaces: polygons + spheres + meshes, points: world.point_lights.len() }
+        Self { surfaces: world.emitting(), points: world.point_lights.len() }
     }
 
     /// Photons in all where nothing is said.
@@ -123,12 +119,12 @@ fn has_casters(world: &World) -> bool {
     let polygons = world.polygons.iter().map(|polygon| polygon.material);
     let spheres = world.spheres.iter().map(|sphere| sphere.material);
     let mut used = polygons.chain(spheres).chain(world.meshes.iter().map(|mesh| mesh.material));
-    used.any(|material| matches!(world.materials[material], Material::Mirror { .. } | Material::Dielectric { .. }))
+    used.any(|material| world.materials[material].is_specular())
 }
 
 #[cfg(test)]
 mod tests {
-    use smalti_core::scene::world::Sphere;
+    use smalti_core::scene::world::{Material, Sphere};
 
     use super::*;
 

@@ -3,14 +3,13 @@
 
 use serde::Serialize;
 use smalti_core::photon::SUB_MAPS;
-use smalti_core::settings::Rect;
 use smalti_image::Provenance;
 use smalti_scheduler::{Outcome, Photons};
 
 use super::picture::{Picture, Scale};
 use super::request::{Lights, Request};
+use crate::record::{PictureRecord, RunRecord, Work};
 use crate::reproduce;
-use crate::summary::Work;
 
 /// Everything that is told of a photon map. Times in seconds; what does not exist is null.
 #[derive(Debug, Serialize)]
@@ -22,30 +21,15 @@ pub struct Summary {
     pub map: &'static str,
     /// `flux`, `density` or `bounces`.
     pub colour: &'static str,
-    /// Name of the camera; null: the only one, which has none.
-    pub camera: Option<String>,
-    /// Size of the whole image.
-    pub width: u32,
-    pub height: u32,
-    /// Column, row, width and height of the part that is shown; null: all of it.
-    pub crop: Option<[u32; 4]>,
-    pub spp: u32,
+    #[serde(flatten)]
+    pub picture: PictureRecord,
     pub seed: u64,
     pub fresnel: &'static str,
     /// How far photons were asked to count, metres; null: by their density.
     pub radius: Option<f64>,
     pub lights: Lights,
-    pub threads: usize,
-    pub simd: &'static str,
-    pub tile: u32,
-    /// Reading, compiling and building, from the start of the process.
-    pub setup_seconds: f64,
-    /// Emitting, tracing and storing photons, within `render_seconds`.
-    pub photon_seconds: f64,
-    pub render_seconds: f64,
-    pub write_seconds: f64,
-    /// From the start of the process to the end of writing.
-    pub wall_seconds: f64,
+    #[serde(flatten)]
+    pub run: RunRecord,
     /// Photons of the map; of each sub-map as many.
     pub photons_emitted: u64,
     /// Photons that were sent before, to learn how far the others are to count.
@@ -103,23 +87,12 @@ pub fn summary(request: &Request, work: Work, outcome: &Outcome, picture: &Pictu
         scene_hash: job.scene_hash.clone(),
         map: request.map.name(),
         colour: request.colour.name(),
-        camera: Some(job.camera().to_owned()).filter(|name| !name.is_empty()),
-        width: settings.width,
-        height: settings.height,
-        crop: settings.crop.map(|Rect { x, y, width, height }| [x, y, width, height]),
-        spp: settings.spp,
+        picture: PictureRecord::new(job),
         seed: settings.seed,
         fresnel: settings.fresnel.name(),
         radius: settings.radius,
         lights: request.lights,
-        threads: work.threads,
-        simd: job.level.name(),
-        tile: work.tile,
-        setup_seconds: work.setup.as_secs_f64(),
-        photon_seconds: photons.elapsed.as_secs_f64(),
-        render_seconds: outcome.timing.elapsed.as_secs_f64(),
-        write_seconds: 0.0,
-        wall_seconds: 0.0,
+        run: RunRecord::new(job, work, outcome),
         photons_emitted: photons.account.photons,
         photons_ahead: photons.emitted - photons.account.photons,
         photons_stored: photons.stored,
