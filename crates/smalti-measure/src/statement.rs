@@ -1,6 +1,6 @@
 //! The error that a render states of itself.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use smalti_core::film::Estimate;
 
 use crate::compare::FLOOR;
@@ -12,7 +12,7 @@ use crate::relative::relative;
 /// The upper ends are `None` where they cannot be known: too few rounds, or pixels whose statistics cannot be trusted
 /// carry a notable part of the error. The statement is then a lower bound. Noise only: a bias (a depth limit, a photon
 /// radius) and light that no sample met are not in it. The names of the fields are a promise: summaries carry them.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ErrorStatement {
     /// Mean over pixels and channels of (x − r)² / (r² + 0.01), r the truth.
     pub relmse: f64,
