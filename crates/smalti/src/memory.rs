@@ -13,7 +13,8 @@ pub fn film_bytes(area: Rect) -> Option<u64> {
 /// Bytes that the photon maps of a render may take at most while they are built.
 pub fn photon_bytes(settings: &Settings) -> u64 {
     let maps: &[Kind] = match settings.integrator {
-        Integrator::Auto => &[Kind::Caustic],
+        // Its caustic photons go on, and are stored as often as those of all light.
+        Integrator::Auto => &[Kind::Global],
         Integrator::Photon => &[Kind::Caustic, Kind::Global],
         Integrator::Path | Integrator::Whitted => &[],
     };

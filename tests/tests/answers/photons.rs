@@ -86,7 +86,7 @@ fn photons_bring_lamberts_irradiance() {
         let radius = (0.1 * scene.frame.scale) as f32;
         // Only what comes near is asked.
         let aim = Aim::at(&scene.lights, &[[place.point[0], place.point[1], place.point[2], 4.0 * radius]], &[true]);
-        let pass = Pass { kind: Kind::Global, aim, photons: 0 };
+        let pass = Pass { kind: Kind::Global, aim, photons: 0, goes_on: true };
         let (rounds, mut sum, mut squares) = (16u32, 0.0, 0.0);
         for round in 0..rounds {
             let traced = trace(&renderer, &pass, 1 << 17, round);

@@ -36,7 +36,7 @@ fn a_radius_blurs_by_its_square() {
     let scale = scene.frame.scale;
     let [x, y, z] = scene.frame.point(DVec3::ZERO).as_vec3().to_array();
     let aim = Aim::at(&scene.lights, &[[x, y, z, (0.7 * scale) as f32]], &[true]);
-    let pass = Pass { kind: Kind::Global, aim, photons: 0 };
+    let pass = Pass { kind: Kind::Global, aim, photons: 0, goes_on: true };
     let radii = [0.15, 0.3, 0.6];
     let (rounds, mut sums, mut squares) = (32u32, [0.0; 3], [0.0; 3]);
     for round in 0..rounds {

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 pub struct Account {
     /// Flux that was emitted.
     pub emitted: [f64; 3],
-    /// Flux that ended where it was stored (caustic photons; global ones go on and are absorbed).
+    /// Flux that ended where it was stored; of photons that go on what surfaces take is absorbed.
     pub stored: [f64; 3],
     /// Flux that surfaces took: by reflecting less than arrived, by roulette, or because its way ended there.
     pub absorbed: [f64; 3],

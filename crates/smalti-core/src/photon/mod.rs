@@ -47,7 +47,8 @@ pub const SUB_MAPS: u32 = ROUND;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[repr(u32)]
 pub enum Kind {
-    /// Light that came to a diffuse surface by way of specular ones alone: L S+ D.
+    /// Light that came to a diffuse surface by way of specular ones alone: L S+ D; and, where the pass goes on, all that
+    /// diffuse and specular surfaces make of it: L S+ D (S|D)*, at every diffuse vertex.
     Caustic = 0,
     /// All light at every diffuse surface: L (S|D)* D.
     Global = 1,

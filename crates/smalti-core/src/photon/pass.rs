@@ -52,6 +52,9 @@ pub struct Pass {
     pub aim: Aim,
     /// Photons in all, over all sub-maps; rounded up to a multiple of their number.
     pub photons: u32,
+    /// Whether photons go on from a diffuse surface on which they are stored, to be stored again where they land next:
+    /// all light, or of caustics the light that they send on too. Else they end there.
+    pub goes_on: bool,
 }
 
 impl Pass {
@@ -122,7 +125,7 @@ impl Renderer {
         }
         for bounce in 0..self.plan().max_bounces {
             traced.account.rays += workspace.photons.len() as u64;
-            self.photon_bounce(batch.kind, bounce, workspace, &mut traced);
+            self.photon_bounce(pass, bounce, workspace, &mut traced);
             core::mem::swap(&mut workspace.photons, &mut workspace.next);
             workspace.next.clear();
             if workspace.photons.is_empty() {
@@ -146,7 +149,7 @@ impl Renderer {
     }
 
     /// Takes photons through one bounce.
-    fn photon_bounce(&self, kind: Kind, bounce: u32, workspace: &mut PhotonWorkspace, traced: &mut Traced) {
+    fn photon_bounce(&self, pass: &Pass, bounce: u32, workspace: &mut PhotonWorkspace, traced: &mut Traced) {
         let (scene, token) = (self.scene(), self.token());
         dispatch!(token, l => intersect::run(l, &self.plan().everything, &mut workspace.photons));
         self.sort_photons(workspace);
@@ -157,20 +160,18 @@ impl Renderer {
         add(&mut account.absorbed, on_black(scene, photons, power));
         let landed = sum(diffuse, power);
         // Report §2.8: "stored when their path terminates", those that come straight from the light too.
-        if kind == Kind::Global || bounce > 0 || mutant!("caustics_with_direct_light") {
+        let stores = pass.kind == Kind::Global || bounce > 0;
+        if stores || mutant!("caustics_with_direct_light") {
             account.nonfinite +=
                 dispatch!(token, l => store::run(l, scene, &|_| bounce, diffuse, power, &mut traced.photons));
         }
-        match kind {
-            Kind::Caustic if bounce == 0 => add(&mut account.absorbed, landed),
-            Kind::Caustic => add(&mut account.stored, landed),
-            Kind::Shadow => unreachable!("shadow photons do not bounce"),
-            Kind::Global => {
-                dispatch!(token, l => surface::run(l, scene, diffuse));
-                let settings = self.settings();
-                dispatch!(token, l => diffuse::run(l, settings.sampler, bounce, diffuse, next));
-                add(&mut account.absorbed, difference(landed, sum(next, power)));
-            }
+        if stores && pass.goes_on {
+            dispatch!(token, l => surface::run(l, scene, diffuse));
+            let sampler = self.settings().sampler;
+            dispatch!(token, l => diffuse::run(l, sampler, bounce, diffuse, next));
+            add(&mut account.absorbed, difference(landed, sum(next, power)));
+        } else {
+            add(if stores { &mut account.stored } else { &mut account.absorbed }, landed);
         }
         self.scatter_specular(bounce, (mirror, dielectric, next, power), account);
     }

@@ -38,9 +38,11 @@ impl Photons {
         }
         let all = settings.integrator == Integrator::Photon;
         let in_map = if all { vec![1; scene.lights.emitters.len()] } else { hard_to_find(scene) };
-        let caustic = caustic(scene, settings, &in_map);
         let global =
             (all && !lacks_sky(scene, settings)).then(|| global(scene, settings)).filter(|pass| !pass.aim.is_empty());
+        // A final gather finds what caustics send on; without one, photons do.
+        let goes_on = global.is_none();
+        let caustic = caustic(scene, settings, &in_map).map(|pass| Pass { goes_on, ..pass });
         (caustic.is_some() || global.is_some()).then(|| Self {
             in_map,
             // Shadow photons tell where shadow rays need not be asked: only where something may stop them.
@@ -119,7 +121,7 @@ pub fn missing(scene: &Scene, settings: &Settings) -> &'static str {
 
 /// Shadow photons.
 fn shadow(scene: &Scene) -> Pass {
-    Pass { kind: Kind::Shadow, aim: Aim::everywhere(&scene.lights), photons: visibility::PHOTONS }
+    Pass { kind: Kind::Shadow, aim: Aim::everywhere(&scene.lights), photons: visibility::PHOTONS, goes_on: false }
 }
 
 /// The caustic pass, where light can go from a light to a specular caster and on to a diffuse receiver.
@@ -130,12 +132,17 @@ fn caustic(scene: &Scene, settings: &Settings, in_map: &[u32]) -> Option<Pass> {
     let emits: Vec<bool> =
         rows.map(|row| scene.lights.emitter_of(row).is_none_or(|emitter| in_map[emitter as usize] == 1)).collect();
     let aim = Aim::at(&scene.lights, Parts::new(scene, &casters).spheres(), &emits);
-    (!aim.is_empty()).then(|| Pass { kind: Kind::Caustic, aim, photons: settings.photons_of_round() })
+    (!aim.is_empty()).then(|| Pass { kind: Kind::Caustic, aim, photons: settings.photons_of_round(), goes_on: false })
 }
 
 /// The pass of all light.
 fn global(scene: &Scene, settings: &Settings) -> Pass {
-    Pass { kind: Kind::Global, aim: Aim::everywhere(&scene.lights), photons: settings.photons_of_round() }
+    Pass {
+        kind: Kind::Global,
+        aim: Aim::everywhere(&scene.lights),
+        photons: settings.photons_of_round(),
+        goes_on: true,
+    }
 }
 
 /// For each emitter 1 where chance hardly finds it, or finds it with much more than it finds in the mean.

@@ -112,7 +112,8 @@ fn caustic_map(pass: &Pass, photons: &super::Photons, scene: &Scene) -> Decision
     );
     from.extend((points > 0).then(|| format!("{}, found by no chance", counted(points, "point light"))));
     let targets = counted(pass.aim.targets.len(), "group");
-    map(pass, "caustic map", format!("from {}; aimed at {targets} of specular surfaces", from.join(" and ")))
+    let then = if pass.goes_on { ", and on from where they land" } else { "" };
+    map(pass, "caustic map", format!("from {}; aimed at {targets} of specular surfaces{then}", from.join(" and ")))
 }
 
 fn map(pass: &Pass, name: &str, reason: String) -> Decision {
@@ -141,7 +142,7 @@ fn stage_reason(stage: &Stage, scene: &Scene, settings: &Settings) -> Decision {
         Stage::Direct { weighed: false } => {
             ("direct light", format!("{} a vertex", counted(rays as usize, "light sample")))
         }
-        Stage::Caustic => ("caustic map", "light by way of specular surfaces, from photons".into()),
+        Stage::Caustic => ("caustic map", "light by way of specular surfaces first, from photons".into()),
         Stage::Gather => ("final gather", "all light behind a diffuse bounce, from photons".into()),
         Stage::Show(_) => ("photon map", "asked where the first diffuse surface is seen; the path ends there".into()),
         Stage::Diffuse => ("diffuse bounce", "indirect light by cosine-distributed rays".into()),

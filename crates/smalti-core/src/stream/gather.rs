@@ -1,8 +1,10 @@
 //! Light from photon maps at diffuse vertices.
 //!
-//! [`caustic`] adds what came by way of specular surfaces, at every vertex; what the map holds is not found a second
-//! time: emission after a diffuse and then only specular bounces does not count for lights that are in the map (see
-//! [`emission`](super::emission)). [`last`] adds all light where a path ends at its second diffuse vertex (the final
+//! [`caustic`] adds, at a path's first diffuse vertex, what left a light for specular surfaces first (L S+ D), and what
+//! diffuse surfaces make of that before it comes there: a bright spot under glass is a light of its own, and chance
+//! finds it as seldom. What the map holds is not found a second time: later vertices do not ask, and emission after a
+//! diffuse and then only specular bounces does not count for lights that are in the map (see
+//! [`emission`](super::emission)). Where a final gather follows, it finds what goes on from caustics. [`last`] adds all light where a path ends at its second diffuse vertex (the final
 //! gather of Jensen's second pass). [`shown`] ends them at the first, so that the map itself is seen.
 //!
 //! Most vertices see little caustic light, and a query costs as much as a bounce. So a vertex asks with a chance in
@@ -59,7 +61,9 @@ pub fn caustic<L: Lanes>(
         let chance = expected * counts.max_component(l) * l.f(1.0 / (CERTAIN * context.reference));
         let chance = l.min(l.max(chance, l.f(LEAST_CHANCE)), l.f(1.0));
         let (u, _) = pair(l, context.sampler, vertices.keys(l, at), bounce, Purpose::Gather);
-        let asks = vertices.active(l, at) & l.lt(u, chance);
+        // What comes by another diffuse vertex is in the map as well, or behind a final gather.
+        let first = l.eq(vertices.pdf(l, at), l.f(0.0));
+        let asks = vertices.active(l, at) & first & l.lt(u, chance);
         if l.any(asks) {
             ask(l, (vertices, at), asks, counts.scale(l.f(1.0) / chance), asking);
         }
