@@ -4,7 +4,7 @@ use std::ops::{ControlFlow, Range};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::film::{ROUND, Shift, Tile};
+use crate::film::{Counts, ROUND, Shift, Tile};
 pub use crate::lanes::Level;
 use crate::lanes::dispatch;
 use crate::photon::gather::Gather;
@@ -174,21 +174,48 @@ impl Renderer {
         workspace: &mut Workspace,
         progress: &AtomicU64,
     ) -> Work {
-        assert!(self.plan.photons.is_none() || rounds(tile.samples, until).all(|round| round == maps.round));
+        assert!(self.plan.photons.is_none() || rounds(tile.samples(), until).all(|round| round == maps.round));
+        self.add(tile, until, None, (maps, workspace, progress))
+    }
+
+    /// Adds a round of `samples` samples to every pixel of `tile`, each of which counts `weight` times, with the photons of
+    /// `maps`, whichever they are.
+    pub fn visit(
+        &self,
+        tile: &mut Tile,
+        (samples, weight): (u32, f64),
+        maps: &Maps,
+        workspace: &mut Workspace,
+        progress: &AtomicU64,
+    ) -> Work {
+        let work = self.add(tile, tile.samples() + samples, Some(weight), (maps, workspace, progress));
+        tile.counts.end_round();
+        work
+    }
+
+    /// Adds samples; those of a visit count `weight` times and end no round.
+    fn add(
+        &self,
+        tile: &mut Tile,
+        until: u32,
+        weight: Option<f64>,
+        (maps, workspace, progress): (&Maps, &mut Workspace, &AtomicU64),
+    ) -> Work {
         let mut work = Work::default();
         let pixels = tile.pixels.len();
         let at_once = pixels.min(BATCH);
         let samples_at_once = (BATCH / at_once) as u32;
-        while tile.samples < until {
-            let (from, to) = (tile.samples, until.min(tile.samples + samples_at_once));
+        while tile.samples() < until {
+            let (from, to) = (tile.samples(), until.min(tile.samples() + samples_at_once));
+            let mut counts = tile.counts;
             for first in (0..pixels).step_by(at_once) {
                 let batch = first..pixels.min(first + at_once);
                 workspace.pixels.set(tile.area, batch.start, batch.end);
                 self.trace(workspace, from..to, maps, &mut work);
-                deposit(workspace, tile, from..to, &mut work);
+                counts = deposit(workspace, tile, (from..to, weight), &mut work);
                 progress.fetch_add((batch.len() * (to - from) as usize) as u64, Ordering::Relaxed);
             }
-            tile.samples = to;
+            tile.counts = counts;
         }
         work
     }
@@ -367,34 +394,48 @@ fn ready(stream: &mut Stream, waiting: usize, needed: bool) -> Option<&mut Strea
     })
 }
 
-/// Adds the slots of a batch to its pixels, in sample order.
-fn deposit(workspace: &Workspace, tile: &mut Tile, samples: Range<u32>, work: &mut Work) {
-    let numbers = workspace.pixels.numbers();
-    let of_samples = workspace.slots.radiance().chunks_exact(numbers.len());
-    for (sample, slots) in samples.clone().zip(of_samples) {
-        for (pixel, radiance) in numbers.iter().map(|number| *number as usize).zip(slots) {
-            let finite = radiance.iter().all(|x| x.is_finite());
-            if !finite {
-                work.rejected.push(rejected(tile, pixel, sample));
-            }
-            tile.pixels[pixel].add(sample, if finite { *radiance } else { [0.0; 3] });
+/// Adds the slots of a batch to its pixels, in sample order. Returns the counts with these samples.
+fn deposit(
+    workspace: &Workspace,
+    tile: &mut Tile,
+    (samples, weight): (Range<u32>, Option<f64>),
+    work: &mut Work,
+) -> Counts {
+    let mut counts = tile.counts;
+    for (number, sample) in samples.enumerate() {
+        deposit_sample(workspace, tile, (number, sample), (&counts, weight.unwrap_or(1.0)), work);
+        match weight {
+            Some(weight) => counts.add(weight),
+            None => counts.add_plain(),
         }
     }
-    if !workspace.slots.shift().is_empty() {
-        deposit_shifts(workspace, tile, samples);
-    }
+    counts
 }
 
-/// Adds what photon radii add to its pixels.
-fn deposit_shifts(workspace: &Workspace, tile: &mut Tile, samples: Range<u32>) {
-    let numbers = workspace.pixels.numbers();
+/// Adds the slots of one sample of each pixel, the batch's `number`-th.
+fn deposit_sample(
+    workspace: &Workspace,
+    tile: &mut Tile,
+    (number, sample): (usize, u32),
+    (counts, weight): (&Counts, f64),
+    work: &mut Work,
+) {
+    let pixels = workspace.pixels.numbers();
+    let of_sample = number * pixels.len()..(number + 1) * pixels.len();
+    let indices = pixels.iter().map(|pixel| *pixel as usize);
+    for (pixel, radiance) in indices.clone().zip(&workspace.slots.radiance()[of_sample.clone()]) {
+        let finite = radiance.iter().all(|x| x.is_finite());
+        if !finite {
+            work.rejected.push(rejected(tile, pixel, sample));
+        }
+        tile.pixels[pixel].add(counts.batch(), weight, if finite { *radiance } else { [0.0; 3] });
+    }
+    let Some(shifts) = workspace.slots.shift().get(of_sample) else { return };
     tile.shifts.resize(tile.pixels.len(), Shift::default());
-    for (sample, slots) in samples.zip(workspace.slots.shift().chunks_exact(numbers.len())) {
-        for (pixel, shift) in numbers.iter().zip(slots) {
-            if shift.iter().all(|x| x.is_finite()) {
-                let sum = &mut tile.shifts[*pixel as usize][(sample / ROUND % 2) as usize];
-                (0..3).for_each(|c| sum[c] += shift[c]);
-            }
+    for (pixel, shift) in indices.zip(shifts) {
+        if shift.iter().all(|x| x.is_finite()) {
+            let sum = &mut tile.shifts[pixel][counts.half()];
+            (0..3).for_each(|c| sum[c] += shift[c]);
         }
     }
 }

@@ -4,7 +4,6 @@
 mod bias;
 mod compare;
 mod interval;
-mod neighbours;
 mod relative;
 mod statement;
 mod timing;

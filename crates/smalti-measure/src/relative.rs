@@ -1,39 +1,38 @@
 //! An image's own squared relative error, estimated from itself.
 //!
-//! Wanted is E, the mean over pixels and channels of (x − r)² / (r² + a), with x the image and r the truth. The film
-//! knows x and V, an unbiased estimate of x's variance v from R rounds. Then:
+//! Wanted is E, the mean over pixels and channels of (x − r)² / (r² + a), with x the image and r the truth. A pixel's
+//! batches tell x and V, an unbiased estimate of x's variance. Then:
 //!
-//! - S, the mean of V / (r² + a), estimates E. The difference of the two has the variance 2 v² R / (R − 1) in each pixel,
-//!   whatever the distribution of the samples: fourth cumulants cancel. So E / S follows Fisher's F, with as many
-//!   degrees of freedom as there are pixels that matter, and R − 1 times as many.
-//! - r is not known. With x in its place, S is too small where large samples raise x and V together, by as much as the
-//!   distribution is skewed. A neighbour's x is as good a guess of r, and is independent of V: the **gap** between sums
-//!   with neighbours' and own weights measures that bias, without any assumption on the distribution. Neighbours that
-//!   differ by more than noise are left out; what the others differ beyond noise is **structure**, which may account
-//!   for a part of the gap, so that one end of the interval is corrected by the whole and the other by the rest.
-//! - 1 / (x² + a) is on average not 1 / (r² + a): the **curvature** is corrected to first order.
-//! - Where a pixel's standard error is above half its value, a single bright round may dominate it, and more such
-//!   light may not have been met at all: the pixel is **uncertified**. Once such pixels carry more than a tenth of the
-//!   error, or the gap exceeds what it corrects, there is no upper end.
+//! - The mean of V / (r² + a) estimates E. The difference of the two has the variance 2 v² (1 + 1 / f) in each pixel, f one
+//!   less than the number of batches, whatever the distribution of the samples: fourth cumulants cancel. So it is the
+//!   error of this image, not of images like it, and their ratio follows Fisher's F.
+//! - r is not known. With x in its place, V / (x² + a) is too small where large samples raise x and V together, and too
+//!   large as 1 / (x² + a) is on average not 1 / (r² + a). Both go as the inverse of the number of samples, and so the
+//!   same sum over fewer batches, each left out once and each two, tells how much it is: the **jackknife of second
+//!   order** (Schucany, Gray and Owen 1971).
+//! - Where one batch is much brighter than the others together, nobody can say what the pixel is without it: a rare
+//!   event that belongs to this pixel, or one in as many pixels as there are. In the first case the error is that of x,
+//!   in the second it has to be taken relative to what the other batches say. Such pixels are **uncertified**: the lower
+//!   end takes the first, the upper end the second, and once the difference is a large part there is no upper end.
 
-use smalti_core::film::Estimate;
+use smalti_core::film::{BATCHES, Counts, Pixel, Tile};
 
 use crate::interval::ratio_95;
-use crate::neighbours::Grid;
 
-/// A pixel is certified up to this standard error, by its value plus the root of the floor.
-const CERTIFIED: f64 = 0.5;
+/// A pixel is uncertified where r² + a is so much smaller without one of its batches.
+const DOMINATED: f64 = 3.0;
 
-/// The largest part of the error that uncertified pixels may carry.
-const CARRIED: f64 = 0.1;
+/// The largest part of the error that may hang on uncertified pixels.
+const OPEN: f64 = 0.5;
 
-/// Neighbours that differ by more standard errors do not stand for each other.
-const ALIKE: f64 = 3.0;
+/// Pixels that are computed at a time.
+const AT_ONCE: usize = 4;
 
-/// What is taken off for structure, by what is found: pixels that are alike by chance hide some of it.
-const STRUCTURE: f64 = 1.5;
+/// Channels of so many pixels.
+const LANES: usize = 3 * AT_ONCE;
 
 /// A squared relative error with its 95 % interval.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Relative {
     pub value: f64,
     pub low: f64,
@@ -41,197 +40,220 @@ pub(crate) struct Relative {
     pub uncertified: usize,
 }
 
-/// Sums over pixels and channels; see the module's description for the terms.
-#[derive(Default)]
-struct Sums {
-    own: f64,
-    curvature: f64,
-    alike: f64,
-    gap: f64,
-    gap_squares: f64,
-    structure: f64,
-    carried: f64,
-    carried_by_uncertified: f64,
+/// Sums over pixels; each with a floor of its own.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Sums {
+    /// V / (x² + a).
+    plain: f64,
+    /// The same freed of its bias.
+    error: f64,
+    /// Squares of what pixels have of the first.
+    squares: f64,
+    /// Squares of what the jackknife changes.
+    changes: f64,
+    /// What is to be added if the brightest batch of each uncertified pixel was chance.
+    doubt: f64,
     uncertified: usize,
 }
 
-/// The mean of (x − r)² / (r² + `floor`), r the truth. `None` if it is not finite.
-pub(crate) fn relative(grid: &Grid, correlation: &[[f64; 3]; 3], floor: f64) -> Option<Relative> {
-    let mut sums = Sums::default();
-    for (pixel, partner) in grid.pairs() {
-        sums.add(pixel, partner, floor);
+impl Sums {
+    /// The sums of both.
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            plain: self.plain + other.plain,
+            error: self.error + other.error,
+            squares: self.squares + other.squares,
+            changes: self.changes + other.changes,
+            doubt: self.doubt + other.doubt,
+            uncertified: self.uncertified + other.uncertified,
+        }
     }
-    if sums.own == 0.0 {
-        return Some(Relative { value: 0.0, low: 0.0, high: Some(0.0), uncertified: 0 });
+
+    /// The mean over `count` pixels and channels, from `batches` batches. `None` if it is not finite.
+    pub fn relative(&self, count: f64, batches: usize) -> Option<Relative> {
+        if self.plain == 0.0 {
+            return Some(Relative { value: 0.0, low: 0.0, high: Some(0.0), uncertified: 0 });
+        }
+        // Where the jackknife leaves nothing it has gone too far.
+        let error = self.error.max(self.plain / 2.0);
+        let [low, high] = self.interval(batches);
+        let closed = batches > 2 && self.doubt <= OPEN * error;
+        let doubt = self.doubt.max(0.0);
+        let found = Relative {
+            value: if closed { error + doubt / 2.0 } else { error } / count,
+            low: error * low.unwrap_or(0.0) / count,
+            high: high.filter(|_| closed).map(|high| (error + doubt) * high / count),
+            uncertified: self.uncertified,
+        };
+        (found.value.is_finite() && found.low.is_finite()).then_some(found)
     }
-    let count = (3 * grid.estimates.len()) as f64;
-    let curvature = (sums.curvature / sums.own).clamp(-0.5, 1.0);
-    let straight = sums.own / count / (1.0 + curvature);
-    let certified = sums.carried_by_uncertified <= CARRIED * sums.carried && sums.gap <= sums.alike;
-    let [least, most] = sums.gaps(certified);
-    // A correction of first order leaves out what is of the order of its square.
-    let left_out = curvature * curvature;
-    let spread = if certified { sums.gap_spread(most) + left_out * left_out } else { 0.0 };
-    let (low, high) = interval(grid, correlation, floor, spread);
-    let value = straight * (1.0 + (least + most) / 2.0);
-    let high = high.filter(|_| certified).map(|high| straight * (1.0 + most) * high);
-    let found = Relative { value, low: straight * (1.0 + least) * low, high, uncertified: sums.uncertified };
-    value.is_finite().then_some(found)
+
+    /// The interval of the ratio of the true error to the estimated one. Channels are taken to go together.
+    fn interval(&self, batches: usize) -> [Option<f64>; 2] {
+        let freedom = (batches - 1) as f64;
+        let total = self.plain * self.plain;
+        // The mean of t² is not the square of the mean but (1 + 2 / f) times that.
+        let above = self.squares / (1.0 + 2.0 / freedom);
+        let below = above / freedom;
+        let variance = 2.0 * (above + below) / total;
+        let certain = variance / (variance + self.changes / total);
+        let (low, high) = ratio_95(certain * total / above, certain * total / below);
+        [Some(low), high]
+    }
+}
+
+/// The sums over the pixels of a tile, for two floors.
+pub(crate) fn sums(tile: &Tile, floors: [f64; 2]) -> [Sums; 2] {
+    let subsets = Subsets::of(&tile.counts);
+    let mut looks = vec![Look::default(); subsets.0.len()];
+    let mut sums = [Sums::default(); 2];
+    for pixels in tile.pixels.chunks(AT_ONCE) {
+        let means = means(pixels, &tile.counts);
+        subsets.look(&means, &mut looks);
+        for (sums, floor) in sums.iter_mut().zip(floors) {
+            sums.add(&subsets.terms(&looks, floor), pixels.len());
+        }
+    }
+    sums
 }
 
 impl Sums {
-    fn add(&mut self, pixel: &Estimate, partner: Option<&Estimate>, floor: f64) {
-        let weights = weights(pixel, floor);
-        let own = terms(pixel, &weights);
-        let (total, rounds): (f64, _) = (own.iter().sum(), f64::from(pixel.rounds));
-        self.own += total;
-        for (c, term) in own.iter().enumerate() {
-            let part = pixel.mean()[c] * pixel.mean()[c] * weights[c];
-            // The mean of V² is not v² but (R + 1) / (R − 1) times that.
-            self.curvature += term * term * (4.0 * part - 1.0) * (rounds - 1.0) / (rounds + 1.0);
-        }
-        let alike = partner.filter(|partner| alike(pixel, partner));
-        let carried = alike.map_or(total, |partner| self.add_pair([pixel, partner], weights, total, floor));
-        let certified = is_certified(pixel, floor);
-        self.carried += carried;
-        self.carried_by_uncertified += if certified { 0.0 } else { carried };
-        self.uncertified += usize::from(!certified);
-    }
-
-    /// Compares a pixel with one that is alike. Returns the pixel's squared error relative to that one's value.
-    fn add_pair(&mut self, pair: [&Estimate; 2], own: [f64; 3], total: f64, floor: f64) -> f64 {
-        let other = weights(pair[1], floor);
-        let gap = gap(pair, [&own, &other]);
-        self.alike += total;
-        self.gap += gap;
-        self.gap_squares += gap * gap;
-        self.structure += structure(pair, [&own, &other]);
-        terms(pair[0], &other).iter().sum()
-    }
-
-    /// The least and the most that the gap may add to the error, as a fraction of it.
-    fn gaps(&self, certified: bool) -> [f64; 2] {
-        if self.alike == 0.0 {
-            return [0.0; 2];
-        }
-        let gap = (self.gap / self.alike).clamp(-0.5, 1.0);
-        let structure = if certified { STRUCTURE * self.structure / self.alike } else { f64::INFINITY };
-        [gap.min((gap - structure.max(0.0)).max(0.0)), gap]
-    }
-
-    /// The relative variance that the gap's own uncertainty adds. Both pixels of a pair have the same gap.
-    fn gap_spread(&self, gap: f64) -> f64 {
-        if self.alike == 0.0 {
-            return 0.0;
-        }
-        let relative = 1.0 / (self.alike * (1.0 + gap));
-        2.0 * self.gap_squares * relative * relative
-    }
-}
-
-/// The interval of the ratio of the true error to the estimated one, `extra` the relative variance that comes on top of
-/// that of the squares.
-fn interval(grid: &Grid, correlation: &[[f64; 3]; 3], floor: f64, extra: f64) -> (f64, Option<f64>) {
-    let (mut count, mut total, mut roots, mut above, mut below) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    for rows in grid.estimates.chunks(grid.width * grid.shared) {
-        for square in squares(grid, rows, floor) {
-            let [plain, centred] = square.products(correlation);
-            count += 1.0;
-            total += square.terms.iter().sum::<f64>();
-            roots += plain.sqrt();
-            above += centred;
-            below += centred / square.freedom;
-        }
-    }
-    // Squares of few estimates cannot be centred; they are no less than the square of the mean.
-    let scale = (roots * roots / count / above).max(1.0);
-    (above, below) = (above * scale, below * scale);
-    let variance = 2.0 * (above + below) / (total * total);
-    let certain = variance / (variance + extra);
-    ratio_95(certain * total * total / above, certain * total * total / below)
-}
-
-/// Pixels whose errors may go together, taken as if they did entirely.
-#[derive(Clone)]
-struct Square {
-    terms: [f64; 3],
-    freedom: f64,
-}
-
-impl Square {
-    /// The squared sum of the terms, as far as the channels go together; and without what the terms' own uncertainty
-    /// adds to it.
-    fn products(&self, correlation: &[[f64; 3]; 3]) -> [f64; 2] {
-        let mut sums = [0.0; 2];
-        for (i, row) in correlation.iter().enumerate() {
-            for (j, squared) in row.iter().enumerate() {
-                let product = squared * self.terms[i] * self.terms[j];
-                sums[0] += product;
-                sums[1] += product / (1.0 + 2.0 * squared / self.freedom);
+    fn add(&mut self, terms: &Terms, pixels: usize) {
+        for pixel in 0..pixels {
+            let of = |values: &[f64; LANES]| values[3 * pixel..3 * pixel + 3].iter().sum::<f64>();
+            let (plain, error) = (of(&terms.plain), of(&terms.error));
+            self.plain += plain;
+            self.error += error;
+            self.squares += plain * plain;
+            self.changes += (error - plain) * (error - plain);
+            if terms.dominated[3 * pixel..3 * pixel + 3].iter().any(|ratio| *ratio > DOMINATED) {
+                self.uncertified += 1;
+                self.doubt += of(&terms.without) - error;
             }
         }
-        sums
     }
 }
 
-/// The squares of one row of them.
-fn squares(grid: &Grid, rows: &[Estimate], floor: f64) -> Vec<Square> {
-    let mut squares = vec![Square { terms: [0.0; 3], freedom: f64::INFINITY }; grid.width.div_ceil(grid.shared)];
-    for row in rows.chunks(grid.width) {
-        for (column, pixel) in row.iter().enumerate() {
-            let square = &mut squares[column / grid.shared];
-            let terms = terms(pixel, &weights(pixel, floor));
-            (0..3).for_each(|c| square.terms[c] += terms[c]);
-            square.freedom = square.freedom.min(f64::from(pixel.rounds) - 1.0);
+/// Means of the batches of some pixels, channel by channel; 0 for pixels that are missing.
+fn means(pixels: &[Pixel], counts: &Counts) -> [[f64; LANES]; BATCHES] {
+    let mut means = [[0.0; LANES]; BATCHES];
+    for (number, pixel) in pixels.iter().enumerate() {
+        for (batch, means) in means.iter_mut().enumerate() {
+            means[3 * number..3 * number + 3].copy_from_slice(&pixel.batch_mean(counts, batch));
         }
     }
-    squares
+    means
 }
 
-/// The estimated squared errors of a pixel's channels, with the weights of its own or another value.
-fn terms(pixel: &Estimate, weights: &[f64; 3]) -> [f64; 3] {
-    // A black image has infinite weights where the floor is 0, and no error.
-    std::array::from_fn(|c| if pixel.variance()[c] == 0.0 { 0.0 } else { pixel.variance()[c] * weights[c] })
+/// Some of the batches: what each counts for in the mean, and in the variance of the mean of all of them.
+#[derive(Clone, Copy, Debug)]
+struct Subset {
+    mean: [f64; BATCHES],
+    variance: [f64; BATCHES],
+    /// What its term counts for in the jackknife.
+    factor: f64,
+    /// Whether one batch alone is left out.
+    without_one: bool,
 }
 
-fn weights(pixel: &Estimate, floor: f64) -> [f64; 3] {
-    pixel.mean().map(|mean| 1.0 / (mean * mean + floor))
+/// All batches; all but one; all but two.
+struct Subsets(Vec<Subset>);
+
+/// Mean and variance as some batches say them.
+#[derive(Clone, Default)]
+struct Look {
+    mean: [f64; LANES],
+    variance: [f64; LANES],
 }
 
-/// Whether no channel differs by more than noise can explain.
-fn alike(pixel: &Estimate, partner: &Estimate) -> bool {
-    let noise = |c: usize| pixel.variance()[c] + partner.variance()[c];
-    (0..3).all(|c| distance([pixel, partner], c) <= ALIKE * ALIKE * noise(c))
+/// What pixels have of the sums, channel by channel.
+struct Terms {
+    plain: [f64; LANES],
+    error: [f64; LANES],
+    /// The variance relative to what the pixel is without its brightest batch.
+    without: [f64; LANES],
+    /// How much smaller r² + a is without it.
+    dominated: [f64; LANES],
 }
 
-fn distance([pixel, partner]: [&Estimate; 2], channel: usize) -> f64 {
-    let difference = pixel.mean()[channel] - partner.mean()[channel];
-    difference * difference
+impl Subsets {
+    fn of(counts: &Counts) -> Self {
+        let used = counts.batches();
+        // 1 / n and 1 / n² cancel: n = 4, 3, 2; of three batches 1 / n alone, of two nothing.
+        let factors: [f64; 3] = match used {
+            4 => [8.0, -9.0, 2.0],
+            3 => [3.0, -2.0, 0.0],
+            _ => [1.0, 0.0, 0.0],
+        };
+        let masks = || (1u32..1 << used).map(|mask| (mask, used - mask.count_ones() as usize));
+        let of_size = |left_out: usize| masks().filter(move |(_, missing)| *missing == left_out);
+        let subset = |(mask, missing): (u32, usize)| {
+            Subset::new(counts, mask, factors[missing] / of_size(missing).count() as f64, missing == 1)
+        };
+        let needed = |left_out: &usize| *left_out < 2 || factors[*left_out] != 0.0;
+        Self((0..3).filter(needed).flat_map(of_size).map(subset).collect())
+    }
+
+    fn look(&self, means: &[[f64; LANES]; BATCHES], looks: &mut [Look]) {
+        self.0.iter().zip(looks).for_each(|(subset, look)| *look = subset.look(means));
+    }
+
+    fn terms(&self, looks: &[Look], floor: f64) -> Terms {
+        let mut least = [f64::INFINITY; LANES];
+        let (mut plain, mut error) = ([0.0; LANES], [0.0; LANES]);
+        for (subset, look) in self.0.iter().zip(looks) {
+            let term = look.term(floor);
+            (0..LANES).for_each(|i| error[i] += subset.factor * term[i]);
+            if subset.without_one {
+                (0..LANES).for_each(|i| least[i] = if look.mean[i] < least[i] { look.mean[i] } else { least[i] });
+            }
+        }
+        let all = &looks[0];
+        plain.copy_from_slice(&all.term(floor));
+        let square = |mean: f64| mean * mean + floor;
+        Terms {
+            plain,
+            error,
+            without: std::array::from_fn(|i| ratio(all.variance[i], square(least[i]))),
+            dominated: std::array::from_fn(|i| ratio(square(all.mean[i]), square(least[i]))),
+        }
+    }
 }
 
-/// Half of what the squared errors of a pair grow by when each is taken relative to the other's value.
-fn gap([pixel, partner]: [&Estimate; 2], [own, other]: [&[f64; 3]; 2]) -> f64 {
-    let of_channel = |c: usize| match pixel.variance()[c] - partner.variance()[c] {
-        0.0 => 0.0,
-        change => 0.5 * change * (other[c] - own[c]),
-    };
-    (0..3).map(of_channel).sum()
+impl Subset {
+    /// The batches of `mask`.
+    fn new(counts: &Counts, mask: u32, factor: f64, without_one: bool) -> Self {
+        let size = |k: usize| if mask >> k & 1 == 1 { counts.size(k) } else { 0.0 };
+        let all = (0..BATCHES).map(size).sum::<f64>();
+        let freedom = f64::from(mask.count_ones()) - 1.0;
+        let divisor = freedom * counts.size_of_all();
+        Self {
+            mean: std::array::from_fn(|k| size(k) / all),
+            variance: std::array::from_fn(|k| if divisor > 0.0 { size(k) / divisor } else { 0.0 }),
+            factor,
+            without_one,
+        }
+    }
+
+    fn look(&self, means: &[[f64; LANES]; BATCHES]) -> Look {
+        let (mut mean, mut variance) = ([0.0; LANES], [0.0; LANES]);
+        for (batch, share) in means.iter().zip(self.mean) {
+            (0..LANES).for_each(|i| mean[i] += share * batch[i]);
+        }
+        for (batch, share) in means.iter().zip(self.variance) {
+            (0..LANES).for_each(|i| variance[i] += share * (batch[i] - mean[i]) * (batch[i] - mean[i]));
+        }
+        Look { mean, variance }
+    }
 }
 
-/// What the gap of a pair would be if the values differed by what noise does not explain, and the variances with the
-/// square of the value.
-fn structure(pair: [&Estimate; 2], [own, other]: [&[f64; 3]; 2]) -> f64 {
-    let rounds = f64::from(pair[0].rounds);
-    let of_channel = |c: usize| match pair.map(|pixel| pixel.variance()[c]) {
-        [0.0, _] => 0.0,
-        // The last term of the excess: V and V² go together.
-        [v, w] => 2.0 * v * own[c] * other[c] * (distance(pair, c) - v - w + 2.0 * v / (rounds + 1.0)),
-    };
-    (0..3).map(of_channel).sum()
+impl Look {
+    fn term(&self, floor: f64) -> [f64; LANES] {
+        std::array::from_fn(|i| ratio(self.variance[i], self.mean[i] * self.mean[i] + floor))
+    }
 }
 
-fn is_certified(pixel: &Estimate, floor: f64) -> bool {
-    let base = floor.sqrt();
-    let bound = |mean: &f64| (mean.abs() + base) * (mean.abs() + base);
-    pixel.variance().iter().sum::<f64>() <= CERTIFIED * CERTIFIED * pixel.mean().iter().map(bound).sum::<f64>()
+/// A black image has a floor of 0, and no error.
+fn ratio(above: f64, below: f64) -> f64 {
+    if above == 0.0 { 0.0 } else { above / below }
 }

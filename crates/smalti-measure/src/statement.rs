@@ -1,11 +1,11 @@
 //! The error that a render states of itself.
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use smalti_core::film::Estimate;
+use smalti_core::film::{Film, Tile};
 
 use crate::compare::FLOOR;
-use crate::neighbours::Grid;
-use crate::relative::relative;
+use crate::relative::{Sums, sums};
 
 /// The error of one image against the truth, with 95 % intervals: for this image, not for renders like it.
 ///
@@ -27,26 +27,22 @@ pub struct ErrorStatement {
     pub relative_error_low: f64,
     /// Upper end of its interval.
     pub relative_error_high: Option<f64>,
-    /// Pixels with a standard error above half of their value plus a twentieth of the image's mean: a single bright
-    /// round may dominate them.
+    /// Pixels of which a quarter of the samples is much brighter than the rest: nobody can say yet whether that is chance.
     pub uncertified_pixels: usize,
 }
 
-/// The error of the image whose pixels are `estimates`, in rows of `width` from the top.
-///
-/// `shared` says which pixels may share samples: those within squares of so many pixels a side, wider than a photon
-/// gather; 1 where each pixel has samples of its own.
+/// The error of the image that `film` develops into.
 ///
 /// `None` if there is no pixel, one with fewer than two rounds, or one whose mean or variance is not finite.
-pub fn error_statement(estimates: &[Estimate], width: u32, shared: u32) -> Option<ErrorStatement> {
-    if estimates.is_empty() || !estimates.iter().all(is_usable) {
-        return None;
-    }
-    let grid = Grid { estimates, width: width.max(1) as usize, shared: (shared as usize).clamp(1, estimates.len()) };
-    let correlation = grid.channel_correlation();
-    let mean = estimates.iter().flat_map(Estimate::mean).sum::<f64>() / (3 * estimates.len()) as f64;
-    let of = |floor: f64| relative(&grid, &correlation, floor);
-    let (absolute, scaled) = rayon::join(|| of(FLOOR), || of(FLOOR * mean * mean));
+pub fn error_statement(film: &Film) -> Option<ErrorStatement> {
+    let count = (3 * film.area.pixels()) as f64;
+    let batches = film.tiles.iter().map(|tile| tile.counts.batches()).min().filter(|batches| *batches >= 2)?;
+    let brightness: Vec<f64> = film.tiles.par_iter().map(brightness).collect();
+    let mean = brightness.iter().sum::<f64>() / count;
+    let floors = [FLOOR, FLOOR * mean * mean];
+    let of_tiles: Vec<[Sums; 2]> = film.tiles.par_iter().map(|tile| sums(tile, floors)).collect();
+    let all = of_tiles.into_iter().reduce(|a, b| [a[0].and(b[0]), a[1].and(b[1])])?;
+    let [absolute, scaled] = all.map(|sums| sums.relative(count, batches));
     let (absolute, scaled) = (absolute?, scaled?);
     Some(ErrorStatement {
         relmse: absolute.value,
@@ -59,54 +55,58 @@ pub fn error_statement(estimates: &[Estimate], width: u32, shared: u32) -> Optio
     })
 }
 
-fn is_usable(pixel: &Estimate) -> bool {
-    pixel.rounds >= 2 && pixel.mean().iter().chain(&pixel.variance()).all(|value| value.is_finite())
+/// Sum over the pixels and channels of a tile.
+fn brightness(tile: &Tile) -> f64 {
+    tile.pixels.iter().flat_map(|pixel| pixel.mean(&tile.counts)).sum()
 }
 
 #[cfg(test)]
 mod tests {
+    use smalti_core::film::{Counts, Film, ROUND};
+    use smalti_core::settings::Rect;
+
     use super::*;
 
-    fn pixel(mean: f64, variance: f64, rounds: u32) -> Estimate {
-        Estimate::new([mean; 3], [variance; 3], rounds)
+    /// A film whose pixels have batches of these means.
+    fn film(width: u32, height: u32, batches: impl Fn(usize) -> [f64; 4]) -> Film {
+        let mut film = Film::new(Rect { x: 0, y: 0, width, height }, width.max(height));
+        film.tiles[0].counts = Counts::of(4 * ROUND);
+        for (index, pixel) in film.tiles[0].pixels.iter_mut().enumerate() {
+            pixel.sums = batches(index).map(|mean| [mean * f64::from(ROUND); 3]);
+        }
+        film
     }
 
     #[test]
     fn an_image_without_variance_is_exact() {
         for mean in [0.0, 0.5] {
-            let statement = error_statement(&[pixel(mean, 0.0, 2); 6], 3, 1).unwrap();
+            let statement = error_statement(&film(3, 2, |_| [mean; 4])).unwrap();
             assert_eq!((statement.relmse, statement.relmse_low, statement.relmse_high), (0.0, 0.0, Some(0.0)));
             assert_eq!((statement.relative_error, statement.relative_error_high), (0.0, Some(0.0)));
             assert_eq!(statement.uncertified_pixels, 0);
         }
     }
 
+    /// Batches at 1 ± d: variance of the mean d² / 3.
     #[test]
     fn a_constant_image_has_its_closed_form() {
-        let statement = error_statement(&vec![pixel(1.0, 1e-6, 64); 100 * 100], 100, 1).unwrap();
-        assert!((statement.relmse * 1.01e6 - 1.0).abs() < 1e-3, "{statement:?}");
-        assert!((statement.relative_error * 1.01f64.sqrt() * 1e3 - 1.0).abs() < 1e-3);
-        // F with 10,000 (the channels fluctuate alike) and 630,000 degrees of freedom.
-        let half_width = 1.96 * (2.0f64 / 10_000.0 * 65.0 / 63.0 * 64.0 / 63.0).sqrt();
+        let d = 1e-3;
+        let statement = error_statement(&film(100, 100, |_| [1.0 + d, 1.0 - d, 1.0 + d, 1.0 - d])).unwrap();
+        let variance = d * d / 3.0;
+        assert!((statement.relmse * 1.01 / variance - 1.0).abs() < 1e-4, "{statement:?}");
+        assert!((statement.relative_error / (variance / 1.01).sqrt() - 1.0).abs() < 1e-4);
+        // F with 10,000 (the channels are taken to go together) and 30,000 degrees of freedom, freed of 1 + 2 / 3.
+        let half_width = 1.96 * (2.0f64 / 10_000.0 * (1.0 + 1.0 / 3.0) / (1.0 + 2.0 / 3.0)).sqrt();
         assert!(((statement.relmse_high.unwrap() / statement.relmse - 1.0) / half_width - 1.0).abs() < 0.05);
         assert!(((1.0 - statement.relmse_low / statement.relmse) / half_width - 1.0).abs() < 0.05);
     }
 
     #[test]
-    fn pixels_that_share_samples_widen_the_interval() {
-        let estimates = vec![pixel(1.0, 1e-6, 64); 128 * 128];
-        let [alone, shared] = [1, 8].map(|shared| error_statement(&estimates, 128, shared).unwrap());
-        let width = |statement: ErrorStatement| statement.relmse_high.unwrap() - statement.relmse_low;
-        assert_eq!(alone.relmse, shared.relmse);
-        assert!((7.0..9.0).contains(&(width(shared) / width(alone))), "{alone:?} {shared:?}");
-    }
-
-    #[test]
     fn relative_error_does_not_change_with_exposure() {
-        let estimates = |scale: f64| -> Vec<_> {
-            (1..=400).map(|i| pixel(scale * f64::from(i), scale * scale * f64::from(i % 7 * i), 4)).collect()
+        let batches = |scale: f64| {
+            move |i: usize| [0, 1, 2, 3].map(|k: usize| scale * ((i + 1) as f64 + ((i + 3) * (k + 5) % 7) as f64))
         };
-        let [plain, bright] = [1.0, 4096.0].map(|scale| error_statement(&estimates(scale), 20, 1).unwrap());
+        let [plain, bright] = [1.0, 4096.0].map(|scale| error_statement(&film(20, 20, batches(scale))).unwrap());
         assert_eq!(plain.relative_error, bright.relative_error);
         assert_eq!(plain.relative_error_high, bright.relative_error_high);
         assert_eq!(plain.uncertified_pixels, bright.uncertified_pixels);
@@ -115,10 +115,10 @@ mod tests {
     #[test]
     fn one_firefly_leaves_a_lower_bound() {
         for place in [0, 50, 98] {
-            let mut estimates = vec![pixel(1.0, 1e-3, 8); 99 * 20];
-            // One round of eight was brighter by 800.
-            estimates[place] = pixel(101.0, 1e4, 8);
-            let statement = error_statement(&estimates, 99, 1).unwrap();
+            let noise = |i: usize, k: usize| 1.0 + 0.01 * ((i * 7 + k * 13) % 5) as f64;
+            // One batch of four is brighter by 400.
+            let batches = |i: usize| [0, 1, 2, 3].map(|k| noise(i, k) + if (i, k) == (place, 2) { 400.0 } else { 0.0 });
+            let statement = error_statement(&film(99, 20, batches)).unwrap();
             assert_eq!((statement.uncertified_pixels, statement.relmse_high), (1, None), "{statement:?}");
             assert_eq!(statement.relative_error_high, None);
             assert!(statement.relmse_low < 1e4 / (99.0 * 20.0));
@@ -127,15 +127,18 @@ mod tests {
 
     #[test]
     fn what_cannot_be_stated_is_not() {
-        assert_eq!(error_statement(&[], 1, 1), None);
-        assert_eq!(error_statement(&[pixel(1.0, 0.1, 8), pixel(1.0, 0.1, 1)], 2, 1), None);
-        assert_eq!(error_statement(&[pixel(f64::NAN, 0.1, 8)], 1, 1), None);
-        assert_eq!(error_statement(&[pixel(1.0, f64::INFINITY, 8)], 1, 1), None);
+        let empty = Film::new(Rect { x: 0, y: 0, width: 2, height: 1 }, 1);
+        assert_eq!(error_statement(&empty), None);
+        assert_eq!(error_statement(&Film { tiles: Vec::new(), ..empty }), None);
+        assert_eq!(error_statement(&film(1, 1, |_| [1.0, 1.0, f64::NAN, 1.0])), None);
+        assert_eq!(error_statement(&film(1, 1, |_| [1.0, 1.0, f64::INFINITY, 1.0])), None);
     }
 
     #[test]
-    fn one_pixel_of_two_rounds_has_no_upper_end() {
-        let statement = error_statement(&[pixel(1.0, 0.01, 2)], 1, 1).unwrap();
-        assert_eq!((statement.relmse_low, statement.relmse_high), (0.0, None));
+    fn two_rounds_have_no_upper_end() {
+        let mut film = film(30, 30, |i| [1.0, 1.0 + (i % 3) as f64, 0.0, 0.0]);
+        film.tiles[0].counts = Counts::of(2 * ROUND);
+        let statement = error_statement(&film).unwrap();
+        assert!(statement.relmse > 0.0 && statement.relmse_high.is_none(), "{statement:?}");
     }
 }

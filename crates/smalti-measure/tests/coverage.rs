@@ -3,7 +3,8 @@
 
 use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use smalti_core::film::{Estimate, Pixel, ROUND};
+use smalti_core::film::{BATCHES, Counts, Film, Pixel, ROUND};
+use smalti_core::settings::Rect;
 use smalti_measure::{ErrorStatement, error_statement};
 
 const SIDE: usize = 24;
@@ -41,8 +42,6 @@ struct Simulation {
     rounds: u32,
     /// Whether the channels have the same random numbers.
     grey: bool,
-    /// Pixels in squares of so many a side have the same random numbers.
-    shared: usize,
 }
 
 /// Statements of many images, counted.
@@ -105,49 +104,43 @@ fn truth(scene: Scene, x: usize, y: usize) -> [f64; 3] {
 }
 
 impl Simulation {
-    fn pixel(&self, truth: [f64; 3], random: &mut Xoshiro256PlusPlus) -> Estimate {
-        let (mut pixel, samples) = (Pixel::default(), self.rounds * ROUND);
-        for index in 0..samples {
+    fn fill(&self, pixel: &mut Pixel, truth: [f64; 3], random: &mut Xoshiro256PlusPlus) {
+        for index in 0..self.rounds * ROUND {
             let mut factor = sample(self.noise, random);
             let radiance = truth.map(|value| {
                 let radiance = (value * factor) as f32;
                 factor = if self.grey { factor } else { sample(self.noise, random) };
                 radiance
             });
-            pixel.add(index, radiance);
+            pixel.add((index / ROUND) as usize % BATCHES, 1.0, radiance);
         }
-        let variance = pixel.variance_of_mean(samples).unwrap();
-        Estimate::new(pixel.mean(samples), variance, self.rounds)
     }
 
-    /// The random numbers of the pixel at (`x`, `y`).
-    fn random(&self, seed: u64, x: usize, y: usize) -> Xoshiro256PlusPlus {
-        let square = y / self.shared * SIDE + x / self.shared;
-        Xoshiro256PlusPlus::seed_from_u64(seed << 32 | square as u64)
-    }
-
-    /// The statement of one image that takes squares of `declared` pixels a side to share samples, with the true relmse
-    /// and relative error.
-    fn statement(&self, seed: u64, declared: u32) -> (ErrorStatement, f64, f64) {
-        let places = || (0..SIDE * SIDE).map(|i| (i % SIDE, i / SIDE));
-        let truths: Vec<_> = places().map(|(x, y)| truth(self.scene, x, y)).collect();
-        let pixel = |((x, y), &truth)| self.pixel(truth, &mut self.random(seed, x, y));
-        let estimates: Vec<_> = places().zip(&truths).map(pixel).collect();
+    /// The statement of one image, with the true relmse and relative error.
+    fn statement(&self, seed: u64) -> (ErrorStatement, f64, f64) {
+        let truths: Vec<_> = (0..SIDE * SIDE).map(|i| truth(self.scene, i % SIDE, i / SIDE)).collect();
+        let mut film = Film::new(Rect { x: 0, y: 0, width: SIDE as u32, height: SIDE as u32 }, SIDE as u32);
+        let tile = &mut film.tiles[0];
+        tile.counts = Counts::of(self.rounds * ROUND);
+        for (index, (pixel, &truth)) in tile.pixels.iter_mut().zip(&truths).enumerate() {
+            self.fill(pixel, truth, &mut Xoshiro256PlusPlus::seed_from_u64(seed << 32 | index as u64));
+        }
         let values = truths.as_flattened();
         let brightness = values.iter().sum::<f64>() / values.len() as f64;
+        let means: Vec<[f64; 3]> = tile.pixels.iter().map(|pixel| pixel.mean(&tile.counts)).collect();
         let error = |floor: f64| {
-            let pairs = estimates.iter().flat_map(Estimate::mean).zip(values);
+            let pairs = means.as_flattened().iter().zip(values);
             pairs.map(|(x, r)| (x - r) * (x - r) / (r * r + floor)).sum::<f64>() / values.len() as f64
         };
-        let statement = error_statement(&estimates, SIDE as u32, declared).unwrap();
+        let statement = error_statement(&film).unwrap();
         (statement, error(0.01), error(0.01 * brightness * brightness).sqrt())
     }
 
     /// What came of relmse and of the relative error.
-    fn run(&self, declared: u32) -> [Outcome; 2] {
+    fn run(&self) -> [Outcome; 2] {
         let mut outcomes = [Outcome::default(), Outcome::default()];
         for seed in 0..IMAGES {
-            let (statement, relmse, relative_error) = self.statement(seed, declared);
+            let (statement, relmse, relative_error) = self.statement(seed);
             let (low, high) = (statement.relative_error_low, statement.relative_error_high);
             assert!(low <= statement.relative_error, "{statement:?}");
             assert!(high.is_none_or(|high| statement.relative_error <= high), "{statement:?}");
@@ -159,17 +152,20 @@ impl Simulation {
 }
 
 fn simulate(noise: Noise, scene: Scene, rounds: u32, grey: bool) -> [Outcome; 2] {
-    Simulation { noise, scene, rounds, grey, shared: 1 }.run(1)
+    Simulation { noise, scene, rounds, grey }.run()
 }
 
 #[test]
 fn well_behaved_noise_is_covered_as_claimed() {
     for (name, outcomes) in [
-        ("gaussian", simulate(Noise::Gaussian(0.3), Scene::Room, 2, true)),
+        ("gaussian", simulate(Noise::Gaussian(0.3), Scene::Room, 4, true)),
+        ("gaussian, uneven batches", simulate(Noise::Gaussian(0.3), Scene::Room, 6, true)),
+        ("texture", simulate(Noise::Gaussian(1.0), Scene::Texture, 4, true)),
+        ("exponential texture", simulate(Noise::Exponential, Scene::Texture, 4, true)),
         ("gaussian, colours apart", simulate(Noise::Gaussian(0.3), Scene::Room, 8, false)),
         ("wide gaussian", simulate(Noise::Gaussian(1.0), Scene::Room, 4, true)),
         ("contrast", simulate(Noise::Gaussian(1.0), Scene::Contrast, 4, true)),
-        ("exponential, 32 samples", simulate(Noise::Exponential, Scene::Room, 2, true)),
+        ("exponential, 64 samples", simulate(Noise::Exponential, Scene::Room, 4, true)),
         ("exponential, 128 samples", simulate(Noise::Exponential, Scene::Room, 8, true)),
         ("log-normal", simulate(Noise::LogNormal(1.0), Scene::Room, 8, true)),
     ] {
@@ -180,13 +176,11 @@ fn well_behaved_noise_is_covered_as_claimed() {
     }
 }
 
-/// Texture of the size of a pixel cannot be told from skewed noise: the interval is wider, not wrong.
+/// Of two rounds nobody can tell what a pixel is without one of them.
 #[test]
-fn texture_is_covered() {
-    for noise in [Noise::Gaussian(1.0), Noise::Exponential] {
-        for outcome in simulate(noise, Scene::Texture, 4, true) {
-            assert!(outcome.coverage() >= 95.0 && outcome.open == 0, "{} % {outcome:?}", outcome.coverage());
-        }
+fn two_rounds_are_a_lower_bound() {
+    for outcome in simulate(Noise::Gaussian(0.3), Scene::Room, 2, true) {
+        assert!(outcome.open == IMAGES && outcome.coverage() >= 95.0, "{outcome:?}");
     }
 }
 
@@ -212,16 +206,5 @@ fn what_is_stated_of_heavier_tails_holds() {
         for outcome in simulate(noise, Scene::Room, 8, true) {
             assert!(outcome.coverage() >= 95.0, "{} % {outcome:?}", outcome.coverage());
         }
-    }
-}
-
-#[test]
-fn pixels_that_share_samples_are_covered_when_they_are_declared() {
-    let sharing = Simulation { noise: Noise::Gaussian(0.3), scene: Scene::Room, rounds: 8, grey: true, shared: 2 };
-    for outcome in sharing.run(2) {
-        assert!((92.0..=98.0).contains(&outcome.coverage()), "{} % {outcome:?}", outcome.coverage());
-    }
-    for outcome in sharing.run(1) {
-        assert!(outcome.coverage() < 85.0, "{} % {outcome:?}", outcome.coverage());
     }
 }

@@ -48,7 +48,7 @@ impl Record {
 
 /// Fewest samples of any tile; `None` without tiles.
 pub(crate) fn least(film: &Film) -> Option<u32> {
-    film.tiles.iter().map(|tile| tile.samples).min()
+    film.tiles.iter().map(|tile| tile.samples()).min()
 }
 
 /// Adds up the records of all tiles.

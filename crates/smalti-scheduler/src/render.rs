@@ -198,7 +198,7 @@ fn run_unit<W: Send>(
     crew: &Crew<W>,
     audience: &Audience,
 ) -> Result<(), Panicked> {
-    let (tile, area, samples) = (unit.index, unit.tile.area, unit.tile.samples..unit.until);
+    let (tile, area, samples) = (unit.index, unit.tile.area, unit.tile.samples()..unit.until);
     let thread = rayon::current_thread_index().expect("units run on the pool");
     let mut worker = crew[thread].lock().unwrap_or_else(PoisonError::into_inner);
     let panicked = |message| Panicked { tile, area, samples, seed: job.seed, message };
@@ -209,7 +209,7 @@ fn run_unit<W: Send>(
 fn units<'a>(film: &'a mut Film, records: &'a mut [Record], pass: u32, until: u32) -> Vec<Unit<'a>> {
     let tiles = film.tiles.iter_mut().zip(records).enumerate();
     let mut units: Vec<_> = tiles
-        .filter(|(_, (tile, _))| tile.samples < until)
+        .filter(|(_, (tile, _))| tile.samples() < until)
         .map(|(index, (tile, record))| Unit { index, tile, record, pass, until })
         .collect();
     units.sort_by_key(|unit| Reverse(unit.record.last));
@@ -227,7 +227,7 @@ fn judge(watch: Option<&Watch>, film: &Film, samples: u32, spp: u32, judged: &mu
 }
 
 fn started(film: &Film, spp: u32, progress: &Arc<Progress>) -> Event {
-    let missing = |tile: &Tile| tile.area.pixels() as u64 * u64::from(spp.saturating_sub(tile.samples));
+    let missing = |tile: &Tile| tile.area.pixels() as u64 * u64::from(spp.saturating_sub(tile.samples()));
     Event::Started {
         area: film.area,
         tiles: film.tiles.iter().map(|tile| tile.area).collect(),
@@ -256,7 +256,7 @@ mod tests {
     use std::sync::atomic::Ordering::Relaxed;
 
     use crossbeam::channel::{Receiver, bounded, unbounded};
-    use smalti_core::film::Image;
+    use smalti_core::film::{Counts, Image};
     use smalti_core::render::{RayCounts, Rejected};
     use smalti_core::settings::Rect;
 
@@ -268,20 +268,22 @@ mod tests {
     /// A renderer whose radiance is a function of pixel and sample; every seventh sample of row 9 is not finite.
     fn fake(tile: &mut Tile, until: u32, _: &mut (), done: &AtomicU64) -> Work {
         let mut work = Work::default();
-        for sample in tile.samples..until {
+        let before = tile.samples();
+        for sample in before..until {
             for index in 0..tile.pixels.len() as u32 {
                 let pixel = (tile.area.x + index % tile.area.width, tile.area.y + index / tile.area.width);
-                tile.pixels[index as usize].add(sample, [pixel.0 as f32, pixel.1 as f32, 1.0 / (sample + 1) as f32]);
+                let radiance = [pixel.0 as f32, pixel.1 as f32, 1.0 / (sample + 1) as f32];
+                tile.pixels[index as usize].add(tile.counts.batch(), 1.0, radiance);
                 if pixel.1 == 9 && sample % 7 == 0 {
                     work.rejected.push(Rejected { pixel, sample });
                 }
                 done.fetch_add(1, Relaxed);
             }
+            tile.counts.add_plain();
         }
-        let added = u64::from(until - tile.samples) * tile.pixels.len() as u64;
+        let added = u64::from(until - before) * tile.pixels.len() as u64;
         work.rays = RayCounts { camera: added, scattered: 2 * added, shadow: 3 * added };
         work.capped = 1;
-        tile.samples = until;
         work
     }
 
@@ -418,7 +420,10 @@ mod tests {
         };
         let outcome = run_until(&cancel, 64, Film::new(AREA, 8), 1, Some(Watch::new(sender)), &advance).unwrap();
         assert_eq!((units.load(Relaxed), outcome.film.samples(), outcome.interrupted), (23, (2, 4), true));
-        assert_eq!((outcome.timing.passes, outcome.film.tiles.iter().filter(|tile| tile.samples == 4).count()), (2, 5));
+        assert_eq!(
+            (outcome.timing.passes, outcome.film.tiles.iter().filter(|tile| tile.samples() == 4).count()),
+            (2, 5)
+        );
         assert!(matches!(facts(&events).last(), Some(Event::Finished { interrupted: true, .. })));
     }
 
@@ -463,7 +468,7 @@ mod tests {
     #[test]
     fn slow_tiles_are_handed_out_first() {
         let mut film = Film::new(AREA, 8);
-        film.tiles[3].samples = 8;
+        film.tiles[3].counts = Counts::of(8);
         let mut records = vec![Record::default(); film.tiles.len()];
         records[7].last = Duration::from_millis(5);
         records[2].last = Duration::from_millis(9);

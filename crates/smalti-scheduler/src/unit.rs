@@ -60,7 +60,7 @@ impl Unit<'_> {
         audience: &Audience,
         advance: &impl Fn(&mut Tile, u32, &mut W, &AtomicU64) -> Work,
     ) -> Result<(), String> {
-        let samples = self.tile.area.pixels() as u64 * u64::from(self.until - self.tile.samples);
+        let samples = self.tile.area.pixels() as u64 * u64::from(self.until - self.tile.samples());
         let begun = Instant::now();
         let counter = audience.progress.begin(worker.index, self.index, samples, begun);
         let work = catch_unwind(AssertUnwindSafe(|| advance(self.tile, self.until, &mut worker.workspace, counter)));
@@ -97,7 +97,7 @@ impl Unit<'_> {
 
 /// The tile's linear radiance so far.
 fn picture(tile: &Tile) -> Box<[[f32; 3]]> {
-    tile.pixels.iter().map(|pixel| pixel.mean(tile.samples).map(|value| value as f32)).collect()
+    tile.pixels.iter().map(|pixel| pixel.mean(&tile.counts).map(|value| value as f32)).collect()
 }
 
 /// What a panic said.

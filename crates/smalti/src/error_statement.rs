@@ -9,12 +9,9 @@ use smalti_measure::ErrorStatement;
 /// Samples of each pixel below which nothing can be said of the error.
 pub const SAMPLES_NEEDED: u32 = 2 * ROUND;
 
-/// Pixels have samples of their own: they share none with a neighbour.
-const SHARED: u32 = 1;
-
 /// The error of the image that `film` develops into; `None` with fewer than [`SAMPLES_NEEDED`].
 pub fn of(film: &Film) -> Option<ErrorStatement> {
-    smalti_measure::error_statement(&film.estimates()?, film.area.width, SHARED)
+    smalti_measure::error_statement(film)
 }
 
 /// The workers wait while the error is judged for a display: it may cost a part in so many of the time so far.
@@ -49,9 +46,10 @@ mod tests {
     fn film(samples: u32) -> Film {
         let mut film = Film::new(Rect { x: 3, y: 5, width: 6, height: 4 }, 4);
         for tile in &mut film.tiles {
-            tile.samples = samples;
-            for pixel in &mut tile.pixels {
-                (0..samples).for_each(|sample| pixel.add(sample, [1.0 + (sample / ROUND) as f32; 3]));
+            for _ in 0..samples {
+                let (batch, round) = (tile.counts.batch(), tile.counts.rounds);
+                tile.pixels.iter_mut().for_each(|pixel| pixel.add(batch, 1.0, [1.0 + round as f32; 3]));
+                tile.counts.add_plain();
             }
         }
         film

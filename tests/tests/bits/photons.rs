@@ -1,7 +1,7 @@
 //! Photon maps change no promise: the same bits whatever the machine does, and samples that depend on nothing later.
 
 use glam::DVec3;
-use smalti_core::film::{Film, Image, Pixel};
+use smalti_core::film::{Counts, Film, Image, Pixel};
 use smalti_core::photon::{Kind, Quantity, Show};
 use smalti_core::render::{Level, Renderer};
 use smalti_core::scene::World;
@@ -166,9 +166,10 @@ fn a_replayed_sample_with_photons_is_what_the_film_got() {
         let film = Film::new(settings.area(), 64);
         let finished = render(&renderer, film, &pool(2).unwrap(), &Cancel::default(), None).unwrap().film;
         let (x, y) = (11, 9);
-        let mut replayed = Pixel::default();
+        let (mut replayed, mut counts) = (Pixel::default(), Counts::default());
         for sample in 0..settings.spp {
-            replayed.add(sample, renderer.replay((x, y), sample).1);
+            replayed.add(counts.batch(), 1.0, renderer.replay((x, y), sample).1);
+            counts.add_plain();
         }
         assert_eq!(replayed, finished.tiles[0].pixels[(y * SIZE.0 + x) as usize], "{settings:?}");
     }

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicU64;
 
-use smalti_core::film::{Film, Pixel, Tile};
+use smalti_core::film::{Counts, Film, Pixel, Tile};
 use smalti_core::photon::Maps;
 use smalti_core::render::{Level, Renderer};
 use smalti_core::scene::World;
@@ -101,7 +101,7 @@ fn tiles_with_fewer_samples_are_the_beginning_of_theirs() {
     for (index, tile) in film.tiles.iter().enumerate() {
         let short = Settings { spp: uneven(index), crop: Some(tile.area), ..settings.clone() };
         let pixels: Vec<[f32; 3]> =
-            tile.pixels.iter().map(|pixel| pixel.mean(tile.samples).map(|value| value as f32)).collect();
+            tile.pixels.iter().map(|pixel| pixel.mean(&tile.counts).map(|value| value as f32)).collect();
         assert_eq!(draw(&world, &short, Way::default()).pixels, pixels, "{:?}", tile.area);
     }
     let finished = render(&renderer, film, &pool(2).unwrap(), &Cancel::default(), None).unwrap();
@@ -117,9 +117,10 @@ fn a_replayed_sample_is_what_the_film_got() {
             let tile = advance(&renderer, &[18]);
             for (index, expected) in tile.pixels.iter().enumerate().step_by(3) {
                 let pixel = (AREA.x + index as u32 % AREA.width, AREA.y + index as u32 / AREA.width);
-                let mut replayed = Pixel::default();
+                let (mut replayed, mut counts) = (Pixel::default(), Counts::default());
                 for sample in 0..18 {
-                    replayed.add(sample, renderer.replay(pixel, sample).1);
+                    replayed.add(counts.batch(), 1.0, renderer.replay(pixel, sample).1);
+                    counts.add_plain();
                 }
                 assert_eq!(replayed, *expected, "{name} {pixel:?} {settings:?}");
             }

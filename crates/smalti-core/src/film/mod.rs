@@ -1,9 +1,13 @@
-//! The film: per-pixel sums in f64, samples grouped into rounds, and what can be said of their error.
+//! The film: per-pixel sums in f64, in batches that are independent of each other, and what can be said of their error.
 //!
-//! Samples come in rounds of [`ROUND`] samples; each round has its own randomisation, so round means are independent
-//! and their spread tells the standard error of the pixel. A pixel keeps its sum, the M2 of its rounds (Welford) and
-//! the round that is being filled: 72 bytes. A film is cut into tiles; a tile is worked on by one thread at a time and
-//! keeps its own sample count, so that interrupted renders may differ between tiles.
+//! Samples come in rounds of [`ROUND`] samples, each with its own randomisation (and photons), so rounds are independent.
+//! They are dealt out to [`BATCHES`] batches in turn; a pixel keeps the sum of each, and the spread of the batches tells
+//! its standard error. Four sums, and not a mean with its variance: an error *relative to the truth* needs to know what
+//! the pixel would be without the samples that make it noisy (see `smalti-measure`). A film is cut into tiles; a tile is
+//! worked on by one thread at a time and keeps its own sample count, so that interrupted renders may differ between tiles.
+//!
+//! Where sampling is adaptive, a tile takes ρ times as many samples as the film in the mean, and each counts 1 / ρ times. As
+//! ρ is decided before they are taken, the mean has no bias, whatever it is decided by.
 
 mod image;
 
@@ -14,54 +18,128 @@ use crate::settings::Rect;
 /// Samples in a round; a power of two.
 pub const ROUND: u32 = 16;
 
-/// Running sums of one pixel, per channel.
+/// Independent parts of a pixel's samples.
+pub const BATCHES: usize = 4;
+
+/// Sums over the samples of one pixel, per channel: one for each batch.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pixel {
-    /// Sum of all samples.
-    pub sum: [f64; 3],
-    /// Sum of squared deviations of the means of the complete rounds.
-    pub m2: [f64; 3],
-    /// Sum of the samples of the round that is not complete yet.
-    pub round: [f64; 3],
+    /// Each sample times what it counts for.
+    pub sums: [[f64; 3]; BATCHES],
 }
 
 impl Pixel {
-    /// Adds sample number `index` (from 0) of this pixel.
-    pub fn add(&mut self, index: u32, radiance: [f32; 3]) {
-        for (channel, value) in radiance.into_iter().enumerate() {
-            self.sum[channel] += f64::from(value);
-            self.round[channel] += f64::from(value);
-        }
-        if (index + 1).is_multiple_of(ROUND) {
-            self.complete_round(f64::from(index / ROUND));
+    /// Adds a sample that counts `weight` times to a batch.
+    pub fn add(&mut self, batch: usize, weight: f64, radiance: [f32; 3]) {
+        for (sum, value) in self.sums[batch].iter_mut().zip(radiance) {
+            *sum += weight * f64::from(value);
         }
     }
 
-    /// Takes the current round, which `before` others preceded, into the spread (Welford's update).
-    fn complete_round(&mut self, before: f64) {
-        let size = f64::from(ROUND);
-        for channel in 0..3 {
-            let (sum, round) = (self.sum[channel], self.round[channel]);
-            let mean = sum / (size * (before + 1.0));
-            let mean_before = if before > 0.0 { (sum - round) / (size * before) } else { mean };
-            self.m2[channel] += (round / size - mean_before) * (round / size - mean);
-            self.round[channel] = 0.0;
-        }
+    /// Mean of all samples, which `counts` counts; 0 for none.
+    pub fn mean(&self, counts: &Counts) -> [f64; 3] {
+        let weight = counts.weight();
+        let sum = |c: usize| self.sums.iter().map(|sum| sum[c]).sum::<f64>();
+        std::array::from_fn(|c| if weight == 0.0 { 0.0 } else { sum(c) / weight })
     }
 
-    /// Mean of `samples` samples; 0 for none.
-    pub fn mean(&self, samples: u32) -> [f64; 3] {
-        self.sum.map(|sum| if samples == 0 { 0.0 } else { sum / f64::from(samples) })
-    }
-
-    /// Variance of the mean of `samples` samples, from the complete rounds; `None` with fewer than two.
-    pub fn variance_of_mean(&self, samples: u32) -> Option<[f64; 3]> {
-        let rounds = f64::from(samples / ROUND);
-        if rounds < 2.0 {
+    /// Variance of the mean of all samples, from the spread of the batches; `None` with fewer than two complete rounds.
+    pub fn variance_of_mean(&self, counts: &Counts) -> Option<[f64; 3]> {
+        let used = counts.batches();
+        if used < 2 {
             return None;
         }
-        let scale = f64::from(ROUND) / f64::from(samples);
-        Some(self.m2.map(|m2| (m2 / (rounds - 1.0)).max(0.0) * scale))
+        let sizes: [f64; BATCHES] = std::array::from_fn(|k| counts.size(k));
+        let all = sizes.iter().sum::<f64>();
+        let of_channel = |c: usize| {
+            let means: [f64; BATCHES] = std::array::from_fn(|k| self.batch_mean(counts, k)[c]);
+            let mean = means.iter().zip(sizes).map(|(mean, size)| mean * size).sum::<f64>() / all;
+            let spread = means.iter().zip(sizes).map(|(of, size)| size * (of - mean) * (of - mean)).sum::<f64>();
+            spread / (used - 1) as f64 / counts.size_of_all()
+        };
+        Some(std::array::from_fn(of_channel))
+    }
+
+    /// Mean of the samples of a batch; 0 for none.
+    pub fn batch_mean(&self, counts: &Counts, batch: usize) -> [f64; 3] {
+        let weight = counts.weights[batch];
+        self.sums[batch].map(|sum| if weight == 0.0 { 0.0 } else { sum / weight })
+    }
+}
+
+/// How many samples each pixel of a tile has in each batch, and what they count for.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Counts {
+    /// Samples that every pixel has.
+    pub samples: u32,
+    /// Complete rounds, or visits of more than one round.
+    pub rounds: u32,
+    /// Samples of even and of odd rounds.
+    pub halves: [u32; 2],
+    /// What the samples of each batch count for together.
+    pub weights: [f64; BATCHES],
+    /// The sum of the squares of what each counts for.
+    squares: [f64; BATCHES],
+}
+
+impl Counts {
+    /// The batch of the round that comes after the complete ones.
+    pub fn batch(&self) -> usize {
+        self.rounds as usize % BATCHES
+    }
+
+    /// Whether the current round is even (0) or odd (1).
+    pub fn half(&self) -> usize {
+        self.rounds as usize % 2
+    }
+
+    /// Counts one more sample of the current round, `weight` times.
+    pub fn add(&mut self, weight: f64) {
+        let batch = self.batch();
+        self.samples += 1;
+        self.halves[self.half()] += 1;
+        self.weights[batch] += weight;
+        self.squares[batch] += weight * weight;
+    }
+
+    /// Counts one more sample once; every [`ROUND`] of these end a round.
+    pub fn add_plain(&mut self) {
+        self.add(1.0);
+        if self.samples.is_multiple_of(ROUND) {
+            self.end_round();
+        }
+    }
+
+    /// Ends the current round.
+    pub fn end_round(&mut self) {
+        self.rounds += 1;
+    }
+
+    /// Those of so many samples, in rounds of [`ROUND`], each of which counts once.
+    pub fn of(samples: u32) -> Self {
+        let mut counts = Self::default();
+        (0..samples).for_each(|_| counts.add_plain());
+        counts
+    }
+
+    /// What all samples count for together.
+    pub fn weight(&self) -> f64 {
+        self.weights.iter().sum()
+    }
+
+    /// Batches with a complete round.
+    pub fn batches(&self) -> usize {
+        BATCHES.min(self.rounds as usize)
+    }
+
+    /// How many samples of equal weight a batch is worth; 0 of a batch that is not to be judged by.
+    pub fn size(&self, batch: usize) -> f64 {
+        if batch < self.batches() { self.weights[batch] * self.weights[batch] / self.squares[batch] } else { 0.0 }
+    }
+
+    /// The same of all samples.
+    pub fn size_of_all(&self) -> f64 {
+        self.weight() * self.weight() / self.squares.iter().sum::<f64>()
     }
 }
 
@@ -97,11 +175,24 @@ pub struct Tile {
     /// Where it lies in the whole image.
     pub area: Rect,
     /// Samples that every pixel of the tile has.
-    pub samples: u32,
+    pub counts: Counts,
     /// Its pixels, row by row from the top.
     pub pixels: Vec<Pixel>,
     /// What photon radii add to them; empty where no photons are asked.
     pub shifts: Vec<Shift>,
+}
+
+impl Tile {
+    /// An empty tile.
+    pub fn new(area: Rect) -> Self {
+        let pixels = vec![Pixel::default(); area.pixels()];
+        Self { area, counts: Counts::default(), pixels, shifts: Vec::new() }
+    }
+
+    /// Samples that every pixel has.
+    pub fn samples(&self) -> u32 {
+        self.counts.samples
+    }
 }
 
 /// What photon radii add to a pixel in error, as far as photons can tell: sums over the samples of even and of odd
@@ -141,12 +232,7 @@ impl Film {
                     width: tile.min(area.width - x),
                     height: tile.min(area.height - y),
                 };
-                tiles.push(Tile {
-                    area: size,
-                    samples: 0,
-                    pixels: vec![Pixel::default(); size.pixels()],
-                    shifts: Vec::new(),
-                });
+                tiles.push(Tile::new(size));
             }
         }
         Self { area, tiles }
@@ -154,7 +240,7 @@ impl Film {
 
     /// Fewest and most samples of any tile.
     pub fn samples(&self) -> (u32, u32) {
-        let counts = self.tiles.iter().map(|tile| tile.samples);
+        let counts = self.tiles.iter().map(Tile::samples);
         (counts.clone().min().unwrap_or(0), counts.max().unwrap_or(0))
     }
 
@@ -162,22 +248,22 @@ impl Film {
     pub fn develop(&self) -> Image {
         let mut image = Image::black(self.area.width, self.area.height);
         for tile in &self.tiles {
-            self.for_each(tile, |index, pixel| image.pixels[index] = pixel.mean(tile.samples).map(|v| v as f32));
+            self.for_each(tile, |index, pixel| image.pixels[index] = pixel.mean(&tile.counts).map(|v| v as f32));
         }
         image
     }
 
     /// One estimate a pixel in image order, or `None` while some tile has fewer than two complete rounds.
     pub fn estimates(&self) -> Option<Vec<Estimate>> {
-        if self.samples().0 < 2 * ROUND {
+        if self.tiles.iter().any(|tile| tile.counts.batches() < 2) {
             return None;
         }
         let unknown = Estimate::new([0.0; 3], [0.0; 3], 0);
         let mut estimates = vec![unknown; self.area.pixels()];
         for tile in &self.tiles {
             self.for_each(tile, |index, pixel| {
-                let variance = pixel.variance_of_mean(tile.samples).unwrap_or_default();
-                estimates[index] = Estimate::new(pixel.mean(tile.samples), variance, tile.samples / ROUND);
+                let variance = pixel.variance_of_mean(&tile.counts).unwrap_or_default();
+                estimates[index] = Estimate::new(pixel.mean(&tile.counts), variance, tile.counts.rounds);
             });
         }
         Some(estimates)
@@ -186,18 +272,20 @@ impl Film {
     /// What photon radii shift each pixel by, in image order; `None` where no photons are asked, and before every tile
     /// has samples of two rounds.
     pub fn shifts(&self) -> Option<Vec<Shifted>> {
-        if self.samples().0 <= ROUND || self.tiles.iter().any(|tile| tile.shifts.is_empty()) {
+        if self.tiles.iter().any(|tile| tile.counts.halves[1] == 0)
+            || self.tiles.iter().any(|tile| tile.shifts.is_empty())
+        {
             return None;
         }
         let mut shifts = vec![Shifted { mean: [0.0; 3], halves: [[0.0; 3]; 2] }; self.area.pixels()];
         for tile in &self.tiles {
-            let counts = halves(tile.samples).map(f64::from);
+            let counts = tile.counts.halves.map(f64::from);
             let mut halves = tile.shifts.iter();
             self.for_each(tile, |index, pixel| {
                 let [even, odd] = halves.next().copied().unwrap_or_default();
                 let mean = |sum: [f32; 3], count: f64| sum.map(|value| f64::from(value) / count);
                 let halves = [mean(even, counts[0]), mean(odd, counts[1])];
-                shifts[index] = Shifted { mean: pixel.mean(tile.samples), halves };
+                shifts[index] = Shifted { mean: pixel.mean(&tile.counts), halves };
             });
         }
         Some(shifts)
@@ -215,60 +303,82 @@ impl Film {
     }
 }
 
-/// How many of the first `samples` samples are of even and of odd rounds.
-fn halves(samples: u32) -> [u32; 2] {
-    let (pairs, rest) = (samples / (2 * ROUND), samples % (2 * ROUND));
-    [pairs * ROUND + rest.min(ROUND), pairs * ROUND + rest.saturating_sub(ROUND)]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn filled(samples: u32, value: impl Fn(u32) -> f32) -> Pixel {
-        let mut pixel = Pixel::default();
-        (0..samples).for_each(|s| pixel.add(s, [value(s), 2.0 * value(s), 0.0]));
-        pixel
+    fn filled(samples: u32, value: impl Fn(u32) -> f32) -> (Pixel, Counts) {
+        let (mut pixel, mut counts) = (Pixel::default(), Counts::default());
+        for s in 0..samples {
+            pixel.add(counts.batch(), 1.0, [value(s), 2.0 * value(s), 0.0]);
+            counts.add_plain();
+        }
+        (pixel, counts)
     }
 
     #[test]
-    fn a_pixel_takes_72_bytes_and_its_estimate_28() {
-        assert_eq!((size_of::<Pixel>(), size_of::<Estimate>()), (72, 28));
+    fn a_pixel_takes_96_bytes_and_its_estimate_28() {
+        assert_eq!((size_of::<Pixel>(), size_of::<Estimate>()), (96, 28));
     }
 
     #[test]
     fn variance_is_that_of_the_round_means() {
         // Rounds of constant value 1, 2, 4, 9: mean 4, sample variance 38/3, of the mean 38/12.
         let values = [1.0, 2.0, 4.0, 9.0];
-        let pixel = filled(4 * ROUND, |s| values[(s / ROUND) as usize]);
-        let variance = pixel.variance_of_mean(4 * ROUND).unwrap();
+        let (pixel, counts) = filled(4 * ROUND, |s| values[(s / ROUND) as usize]);
+        let variance = pixel.variance_of_mean(&counts).unwrap();
         assert!((variance[0] - 38.0 / 12.0).abs() < 1e-12 && (variance[1] - 4.0 * 38.0 / 12.0).abs() < 1e-11);
-        assert_eq!((variance[2], pixel.mean(4 * ROUND)[0]), (0.0, 4.0));
+        assert_eq!((variance[2], pixel.mean(&counts)[0]), (0.0, 4.0));
+    }
+
+    #[test]
+    fn variance_of_uneven_batches_is_that_of_equal_samples() {
+        // Rounds of 0 and 1: batches have the means 1/2, 0, 1, 0 of 2, 1, 1, 1 rounds; the mean is 2/5.
+        let values = [0.0, 0.0, 1.0, 0.0, 1.0];
+        let (pixel, counts) = filled(5 * ROUND, |s| values[(s / ROUND) as usize]);
+        let spread = 2.0 * 0.1 * 0.1 + 2.0 * 0.4 * 0.4 + 0.6 * 0.6;
+        assert!((pixel.mean(&counts)[0] - 0.4).abs() < 1e-12);
+        assert!((pixel.variance_of_mean(&counts).unwrap()[0] - spread / 3.0 / 5.0).abs() < 1e-12);
     }
 
     #[test]
     fn samples_of_an_unfinished_round_count_for_the_mean_only() {
-        let pixel = filled(2 * ROUND + 4, |s| if s < ROUND { 1.0 } else { 3.0 });
-        let samples = 2 * ROUND + 4;
-        assert!((pixel.mean(samples)[0] - (16.0 + 60.0) / 36.0).abs() < 1e-12);
+        let (pixel, counts) = filled(2 * ROUND + 4, |s| if s < ROUND { 1.0 } else { 3.0 });
+        assert!((pixel.mean(&counts)[0] - (16.0 + 60.0) / 36.0).abs() < 1e-12);
         // Variance of the mean of two rounds (1 and 3) is 1; scaled from 32 to 36 samples.
-        assert!((pixel.variance_of_mean(samples).unwrap()[0] - 32.0 / 36.0).abs() < 1e-12);
-        assert_eq!(pixel.variance_of_mean(2 * ROUND - 1), None);
+        assert!((pixel.variance_of_mean(&counts).unwrap()[0] - 32.0 / 36.0).abs() < 1e-12);
+        assert_eq!(pixel.variance_of_mean(&Counts::of(2 * ROUND - 1)), None);
+    }
+
+    #[test]
+    fn what_is_sampled_seldom_counts_more() {
+        let (mut pixel, mut counts) = (Pixel::default(), Counts::default());
+        for (weight, value) in [(1.0, 3.0), (0.25, 5.0), (4.0, 1.0)] {
+            for _ in 0..ROUND {
+                pixel.add(counts.batch(), weight, [value; 3]);
+                counts.add(weight);
+            }
+            counts.end_round();
+        }
+        let (sum, squares) = (5.25, 1.0 + 0.0625 + 16.0);
+        assert!((pixel.mean(&counts)[0] - (3.0 + 1.25 + 4.0) / sum).abs() < 1e-12);
+        assert!((counts.size_of_all() - f64::from(ROUND) * sum * sum / squares).abs() < 1e-9);
+        assert_eq!((counts.samples, counts.rounds, counts.size(1)), (3 * ROUND, 3, f64::from(ROUND)));
     }
 
     #[test]
     fn sums_stay_exact_where_f32_would_stop_counting() {
         let mut pixel = Pixel::default();
-        pixel.sum[0] = 16_777_216.0;
-        pixel.add(3, [1.0, 0.0, 0.0]);
-        assert_eq!(pixel.sum[0], 16_777_217.0);
+        pixel.sums[0][0] = 16_777_216.0;
+        pixel.add(0, 1.0, [1.0, 0.0, 0.0]);
+        assert_eq!(pixel.sums[0][0], 16_777_217.0);
     }
 
     #[test]
     fn samples_are_of_even_or_odd_rounds() {
         for samples in [0, 1, ROUND, ROUND + 3, 2 * ROUND, 5 * ROUND + 7] {
             let even = (0..samples).filter(|sample| (sample / ROUND).is_multiple_of(2)).count() as u32;
-            assert_eq!(halves(samples), [even, samples - even]);
+            assert_eq!(Counts::of(samples).halves, [even, samples - even]);
         }
     }
 

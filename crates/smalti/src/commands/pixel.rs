@@ -1,7 +1,7 @@
 //! `smalti pixel`: one pixel looked at closely, sample by sample or bounce by bounce.
 
 use serde::Serialize;
-use smalti_core::film::Pixel;
+use smalti_core::film::{Counts, Pixel};
 use smalti_core::render::{Renderer, Vertex};
 
 use crate::args::PixelArgs;
@@ -124,39 +124,40 @@ fn pixel_record(job: &Job, renderer: &Renderer, args: &PixelArgs) -> PixelRecord
         let bounces = vertices.iter().map(|vertex| vertex.bounce).max().unwrap_or(0);
         Bright { sample, radiance, share: None, bounces }
     });
-    let (pixel, nonfinite, brightest) = gather(replayed);
+    let ((pixel, counts), nonfinite, brightest) = gather(replayed);
     let deviation = |variance: [f64; 3]| variance.map(f64::sqrt);
     PixelRecord {
         subject: subject(job, args),
         spp: job.settings.spp,
-        mean: pixel.mean(job.settings.spp),
-        standard_error: pixel.variance_of_mean(job.settings.spp).map(deviation),
+        mean: pixel.mean(&counts),
+        standard_error: pixel.variance_of_mean(&counts).map(deviation),
         nonfinite,
         brightest,
     }
 }
 
 /// The pixel as the film sums it up, the number of samples that were not finite, and the brightest samples.
-fn gather(samples: impl Iterator<Item = Bright>) -> (Pixel, u32, Vec<Bright>) {
-    let mut pixel = Pixel::default();
+fn gather(samples: impl Iterator<Item = Bright>) -> ((Pixel, Counts), u32, Vec<Bright>) {
+    let (mut pixel, mut counts) = (Pixel::default(), Counts::default());
     let mut nonfinite = 0;
     let mut brightest: Vec<Bright> = Vec::new();
     for sample in samples {
-        if sample.radiance.iter().all(|value| value.is_finite()) {
-            pixel.add(sample.sample, sample.radiance);
+        let finite = sample.radiance.iter().all(|value| value.is_finite());
+        pixel.add(counts.batch(), 1.0, if finite { sample.radiance } else { [0.0; 3] });
+        counts.add_plain();
+        if finite {
             brightest.push(sample);
             brightest.sort_by(|a, b| total(b.radiance).total_cmp(&total(a.radiance)));
             brightest.truncate(BRIGHTEST);
         } else {
-            pixel.add(sample.sample, [0.0; 3]);
             nonfinite += 1;
         }
     }
-    let sum: f64 = pixel.sum.iter().sum();
+    let sum: f64 = pixel.sums.as_flattened().iter().sum();
     for bright in &mut brightest {
         bright.share = (sum > 0.0).then(|| total(bright.radiance) / sum);
     }
-    (pixel, nonfinite, brightest)
+    ((pixel, counts), nonfinite, brightest)
 }
 
 fn total(radiance: [f32; 3]) -> f64 {
@@ -230,16 +231,17 @@ mod tests {
 
     #[test]
     fn the_brightest_come_first_and_shares_add_up() {
-        let (pixel, nonfinite, brightest) = gather([1.0, 5.0, 2.0].into_iter().zip(0..).map(|(v, s)| bright(s, v)));
-        assert_eq!((pixel.mean(3), nonfinite), ([8.0 / 3.0; 3], 0));
+        let ((pixel, counts), nonfinite, brightest) =
+            gather([1.0, 5.0, 2.0].into_iter().zip(0..).map(|(v, s)| bright(s, v)));
+        assert_eq!((pixel.mean(&counts), nonfinite), ([8.0 / 3.0; 3], 0));
         assert_eq!(brightest.iter().map(|bright| bright.sample).collect::<Vec<_>>(), [1, 2, 0]);
         assert_eq!(brightest.iter().map(|bright| bright.share.unwrap()).sum::<f64>(), 1.0);
     }
 
     #[test]
     fn what_is_not_finite_counts_as_black() {
-        let (pixel, nonfinite, brightest) = gather([bright(0, f32::NAN), bright(1, 3.0)].into_iter());
-        assert_eq!((pixel.mean(2), nonfinite, brightest.len()), ([1.5; 3], 1, 1));
+        let ((pixel, counts), nonfinite, brightest) = gather([bright(0, f32::NAN), bright(1, 3.0)].into_iter());
+        assert_eq!((pixel.mean(&counts), nonfinite, brightest.len()), ([1.5; 3], 1, 1));
     }
 
     #[test]
