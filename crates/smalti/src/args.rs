@@ -72,9 +72,17 @@ pub struct RenderArgs {
     /// Print the summary as one JSON object on stdout
     #[arg(long)]
     pub json: bool,
+    /// Render NxN pixels for each one of the image and average them; --spp and --photons are of what is rendered, --size
+    /// and --crop of the image
+    #[arg(long, value_name = "N", default_value_t = 1, help_heading = "Image",
+          value_parser = clap::value_parser!(u32).range(1..=MOST_DOWNSAMPLE))]
+    pub downsample: u32,
     #[command(flatten)]
     pub image: ImageArgs,
 }
+
+/// Pixels that become one in each direction, at most.
+pub const MOST_DOWNSAMPLE: i64 = 64;
 
 /// How the machine is used, and what is told meanwhile.
 #[derive(Debug, Args)]

@@ -8,6 +8,7 @@ use smalti_core::scene::World;
 use smalti_core::settings::{Rect, Settings};
 
 use crate::args::ImageArgs;
+use crate::downsample;
 use crate::exit::Failure;
 use crate::memory;
 use crate::names::SimdArg;
@@ -20,8 +21,10 @@ pub struct Job {
     pub path: PathBuf,
     /// What the scene file says.
     pub world: World,
-    /// The scene's settings, overridden by flags.
+    /// What is rendered: the scene's settings, overridden by flags.
     pub settings: Settings,
+    /// Pixels that become one of the image, in each direction.
+    pub downsample: u32,
     /// Hash of what the scene file and its meshes say.
     pub scene_hash: String,
     /// What the reader found worth telling.
@@ -40,15 +43,28 @@ const TILE: u32 = 32;
 impl Job {
     /// Reads `scene` and applies the flags.
     pub fn load(scene: &Path, flags: &ImageArgs, simd: SimdArg) -> Result<Self, Failure> {
+        Self::load_downsampled(scene, flags, 1, simd)
+    }
+
+    /// [`Job::load`] with `by` × `by` pixels for each one of the image that the flags ask for.
+    pub fn load_downsampled(scene: &Path, flags: &ImageArgs, by: u32, simd: SimdArg) -> Result<Self, Failure> {
+        let job = Self::read(scene, flags, simd)?;
+        check_area(&job.settings)?;
+        let settings = downsample::rendered(job.settings, by)?;
+        check_memory(&settings, memory::photon_bytes(&settings), memory::total_bytes())?;
+        Ok(Self { settings, downsample: by, ..job })
+    }
+
+    /// Reads `scene` and applies the flags, without a look at whether what they ask for can be rendered.
+    fn read(scene: &Path, flags: &ImageArgs, simd: SimdArg) -> Result<Self, Failure> {
         let level = choose_level(simd, &Level::available())?;
         let loaded = smalti_scene::load(scene).map_err(|error| Failure::scene(&error))?;
         let settings = merge(loaded.settings.settings(), flags, &loaded.world)?;
-        check_area(&settings)?;
-        check_memory(&settings, memory::photon_bytes(&settings), memory::total_bytes())?;
         Ok(Self {
             path: scene.to_owned(),
             world: loaded.world,
             settings,
+            downsample: 1,
             scene_hash: loaded.scene_hash,
             notes: loaded.notes,
             level,
@@ -59,7 +75,8 @@ impl Job {
 
     /// Side of a tile in pixels.
     pub fn tile(&self, typed: Option<u32>) -> u32 {
-        typed.or(self.tile).unwrap_or(TILE)
+        // What becomes one pixel lies in one tile.
+        typed.or(self.tile).unwrap_or(TILE).next_multiple_of(self.downsample)
     }
 
     /// Brightness of tone-mapped files in stops.

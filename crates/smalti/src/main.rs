@@ -3,6 +3,7 @@
 mod args;
 mod commands;
 mod describe;
+mod downsample;
 mod error_statement;
 mod exit;
 mod frontend;

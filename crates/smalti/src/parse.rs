@@ -5,7 +5,7 @@ use smalti_core::settings::Rect;
 use crate::args::{MAX_THREADS, Threads};
 
 /// The largest side of an image in pixels; scene files have the same limit.
-const MAX_SIDE: u32 = 65_536;
+pub const MAX_SIDE: u32 = 65_536;
 
 /// Width and height in pixels, each from 1 to 65,536.
 #[derive(Clone, Copy, Debug, PartialEq)]

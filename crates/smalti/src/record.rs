@@ -8,6 +8,7 @@ use serde::Serialize;
 use smalti_core::settings::{Rect, Settings};
 use smalti_scheduler::Outcome;
 
+use crate::downsample;
 use crate::job::Job;
 
 /// Settings as users write them.
@@ -19,6 +20,8 @@ pub struct SettingsRecord {
     pub jitter: bool,
     #[serde(flatten)]
     pub picture: PictureRecord,
+    /// Pixels that were rendered for each one of the image, in each direction.
+    pub downsample: u32,
     pub shadow_rays: u32,
     /// Null: roulette alone ends paths.
     pub max_bounces: Option<u32>,
@@ -38,6 +41,7 @@ pub fn settings(job: &Job) -> SettingsRecord {
         fresnel: settings.fresnel.name(),
         jitter: settings.jitter,
         picture: PictureRecord::new(job),
+        downsample: job.downsample,
         shadow_rays: settings.shadow_rays,
         max_bounces: settings.max_bounces,
         seed: settings.seed,
@@ -62,7 +66,7 @@ pub struct PictureRecord {
 impl PictureRecord {
     /// That of a job.
     pub fn new(job: &Job) -> Self {
-        let settings = &job.settings;
+        let settings = downsample::image(&job.settings, job.downsample);
         Self {
             camera: Some(job.camera().to_owned()).filter(|name| !name.is_empty()),
             width: settings.width,
@@ -116,13 +120,16 @@ impl RunRecord {
     }
 }
 
-/// In a few words, without the samples: `path, 800x800, shadow rays 1, sobol, seed 0`.
+/// In a few words, without the samples: `path, 800x800 down-sampled 2x2, shadow rays 1, sobol, seed 0`.
 impl Display for SettingsRecord {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
         let PictureRecord { width, height, crop, .. } = self.picture;
         write!(f, "{}, {width}x{height}", self.integrator)?;
         if let Some([x, y, width, height]) = crop {
             write!(f, " at {x},{y},{width},{height}")?;
+        }
+        if self.downsample > 1 {
+            write!(f, " down-sampled {0}x{0}", self.downsample)?;
         }
         write!(f, ", shadow rays {}, {}, seed {}", self.shadow_rays, self.sampler, self.seed)
     }

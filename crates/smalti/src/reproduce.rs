@@ -4,10 +4,16 @@ use std::path::Path;
 
 use smalti_core::settings::{Rect, Settings};
 
-/// A command that renders what `settings` say with `spp` samples a pixel, independent of the scene's own settings.
-/// `camera` is the name of the camera, empty for the only one.
-pub fn command(scene: &Path, settings: &Settings, spp: u32, camera: &str) -> String {
-    format!("smalti render {}{}", scene_argument(scene), flags(settings, spp, camera))
+use crate::downsample;
+
+/// A command that renders what `settings` say with `spp` samples a pixel, down-sampled `by` so much, independent of the
+/// scene's own settings. `camera` is the name of the camera, empty for the only one.
+pub fn command(scene: &Path, (settings, by): (&Settings, u32), spp: u32, camera: &str) -> String {
+    // Photons that are not asked for are by the size of what is rendered.
+    let photons = Some(settings.photons_of_round());
+    let image = Settings { photons, ..downsample::image(settings, by) };
+    let downsample = if by > 1 { format!(" --downsample {by}") } else { String::new() };
+    format!("smalti render {}{}{downsample}", scene_argument(scene), flags(&image, spp, camera))
 }
 
 /// A command that replays one sample of the same image.
@@ -123,7 +129,7 @@ mod tests {
 
     #[test]
     fn every_setting_is_read_back() {
-        let (scene, flags) = read_back(&command(Path::new("a/b.toml"), &unusual(), 12, "-left"));
+        let (scene, flags) = read_back(&command(Path::new("a/b.toml"), (&unusual(), 1), 12, "-left"));
         assert_eq!((scene.as_str(), flags.spp), ("a/b.toml", Some(12)));
         assert_says_all(&flags);
     }
@@ -137,10 +143,21 @@ mod tests {
 
     #[test]
     fn defaults_need_no_optional_flags() {
-        let line = command(Path::new("-x.toml"), &Settings::default(), 64, "");
+        let line = command(Path::new("-x.toml"), (&Settings::default(), 1), 64, "");
         let expected = "smalti render ./-x.toml --integrator path --size 400x400 --spp 64 --shadow-rays 1 \
                         --sampler sobol --seed 0 --fresnel exact";
         assert_eq!(line, expected);
+    }
+
+    #[test]
+    fn sizes_are_those_of_the_image() {
+        let (width, height) = (3 * unusual().width, 3 * unusual().height);
+        let crop = Some(Rect { x: 15, y: 18, width: 21, height: 24 });
+        let rendered = Settings { integrator: Integrator::Auto, photons: None, width, height, crop, ..unusual() };
+        let line = command(Path::new("a/b.toml"), (&rendered, 3), 12, "");
+        assert!(line.contains("--size 640x48 ") && line.contains("--crop 5,6,7,8 "), "{line}");
+        assert!(line.contains(&format!("--photons {} ", rendered.photons_of_round())), "{line}");
+        assert!(line.ends_with("--downsample 3"), "{line}");
     }
 
     #[test]

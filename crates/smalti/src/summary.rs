@@ -114,10 +114,11 @@ pub struct Developed {
     pub samples: (u32, u32),
 }
 
-/// Develops a film.
-pub fn develop(film: &Film) -> Developed {
+/// Develops a film; `by` × `by` of its pixels become one of the image.
+pub fn develop(film: &Film, by: u32) -> Developed {
+    let film = film.downsampled(by);
     let bias = || film.shifts().and_then(|shifts| smalti_measure::bias_statement(&shifts, film.area.width));
-    let (error, (bias, image)) = rayon::join(|| error_statement::of(film), || (bias(), film.develop()));
+    let (error, (bias, image)) = rayon::join(|| error_statement::of(&film, 1), || (bias(), film.develop()));
     Developed { image, error, bias, samples: film.samples() }
 }
 
@@ -156,8 +157,13 @@ pub fn summary(job: &Job, work: Work, outcome: &Outcome, developed: &Developed) 
         stopped_by: if outcome.interrupted { "interrupt" } else { "spp" },
         target_reached: least >= job.settings.spp,
         outputs: Vec::new(),
-        reproduce: (least == most).then(|| reproduce::command(&job.path, &job.settings, least, job.camera())),
+        reproduce: (least == most).then(|| reproduce(job, least)),
     }
+}
+
+/// The command that makes the image again.
+fn reproduce(job: &Job, spp: u32) -> String {
+    reproduce::command(&job.path, (&job.settings, job.downsample), spp, job.camera())
 }
 
 fn rejected_record(job: &Job, rejected: &Rejected) -> RejectedRecord {

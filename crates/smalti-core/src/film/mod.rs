@@ -9,6 +9,7 @@
 //! Where sampling is adaptive, a tile takes ρ times as many samples as the film in the mean, and each counts 1 / ρ times. As
 //! ρ is decided before they are taken, the mean has no bias, whatever it is decided by.
 
+mod downsample;
 mod image;
 
 pub use image::Image;

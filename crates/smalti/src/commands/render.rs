@@ -24,7 +24,7 @@ use crate::{error_statement, memory, outputs, photon_map, provenance};
 pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Failure> {
     let messages = Messages { json: args.run.progress == ProgressArg::Json };
     let outputs = outputs::checked(&args.outputs, &args.scene, ".png")?;
-    let mut job = Job::load(&args.scene, &args.image, args.run.work.simd.simd)?;
+    let mut job = Job::load_downsampled(&args.scene, &args.image, args.downsample, args.run.work.simd.simd)?;
     let photon_map = args.photon_map.as_deref().map(|path| open_photon_map(path, &mut job)).transpose()?;
     job.notes.iter().for_each(|note| messages.note(note));
     let pool = smalti_scheduler::pool(args.run.threads as usize).map_err(Failure::user)?;
@@ -34,10 +34,11 @@ pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Fa
 
     let mode = Mode::choose(args.run.progress, args.run.quiet, colour);
     let film = Film::new(job.settings.area(), work.tile);
-    let workers = Workers { pool: &pool, interrupt: &interrupt, photon_map: photon_map.as_ref() };
+    let workers =
+        Workers { pool: &pool, interrupt: &interrupt, photon_map: photon_map.as_ref(), downsample: job.downsample };
     let mut outcome = perform(&renderer, film, &workers, mode, title(&job, work, args.exposure))?;
     let kept = photon_map.map_or(Ok(()), PhotonMap::finish);
-    let developed = pool.install(|| develop(&outcome.film));
+    let developed = pool.install(|| develop(&outcome.film, job.downsample));
     // Encoding needs memory too: the film, six times as large as the image, makes room.
     outcome.film.tiles = Vec::new();
     if let Some(signal) = interrupt.signal().filter(|_| outcome.interrupted) {
@@ -77,17 +78,18 @@ fn open_photon_map(path: &Path, job: &mut Job) -> Result<PhotonMap, Failure> {
     PhotonMap::open(path, &job.scene_hash, &job.settings)
 }
 
-/// Who renders, until when, and with which photons.
+/// Who renders, until when, with which photons, and how many pixels become one of the image.
 struct Workers<'a> {
     pool: &'a ThreadPool,
     interrupt: &'a Interrupt,
     photon_map: Option<&'a PhotonMap>,
+    downsample: u32,
 }
 
 /// Renders while a display shows it.
 fn perform(renderer: &Renderer, film: Film, workers: &Workers, mode: Mode, title: Title) -> Result<Outcome, Failure> {
     let (display, watch) = frontend::start(mode, title);
-    let error = error_statement::live(film.area.pixels());
+    let error = error_statement::live(film.area.pixels(), workers.downsample);
     let watch = watch.map(|watch| Watch { error: Some(Box::new(error)), ..watch });
     let shelf = workers.photon_map.map(|map| map as &dyn Shelf);
     let outcome = render_with(renderer, film, workers.pool, &workers.interrupt.cancel, watch, shelf);

@@ -39,6 +39,8 @@ fn values_that_make_no_sense() {
     refuses("render room.toml --size 1x65537", &["at most 65536x65536"]);
     refuses("render room.toml --size 640", &["WIDTHxHEIGHT"]);
     refuses("render room.toml --crop 1,2,3", &["X,Y,W,H"]);
+    refuses("render room.toml --downsample 0", &["--downsample", "0"]);
+    refuses("render room.toml --size 40000x1 --downsample 2", &["--downsample 2", "80000x2"]);
     refuses("render room.toml --threads many", &["many"]);
     refuses("render room.toml --exposure nan", &["nan"]);
     refuses("render room.toml --integrator pth", &["path", "whitted"]);

@@ -3,6 +3,7 @@
 use std::fs;
 
 use serde_json::Value;
+use tempfile::TempDir;
 
 use crate::room::{SCENE, command, folder, json, run, stderr, stdout};
 
@@ -81,22 +82,45 @@ fn the_reproduce_command_gives_the_same_hash() {
     assert_ne!(first["hash"], json(&folder, "render room.toml --json -q")["hash"]);
 }
 
+/// The pixels of a PFM, which begins with the bottom row.
+fn pfm(folder: &TempDir, name: &str) -> Vec<[f32; 3]> {
+    let bytes = fs::read(folder.path().join(name)).unwrap();
+    let start = bytes.iter().enumerate().filter(|(_, byte)| **byte == b'\n').nth(2).unwrap().0 + 1;
+    let (values, _) = bytes[start..].as_chunks::<4>();
+    let (pixels, _) = values.as_chunks::<3>();
+    pixels.iter().map(|pixel| pixel.map(f32::from_le_bytes)).collect()
+}
+
 #[test]
 fn a_crop_is_a_part_of_the_whole_image() {
     let folder = folder();
     json(&folder, "render room.toml -o whole.pfm --json -q");
     json(&folder, "render room.toml -o part.pfm --crop 5,4,7,6 --json -q");
-    let pixels = |name: &str| {
-        let bytes = fs::read(folder.path().join(name)).unwrap();
-        let start = bytes.iter().enumerate().filter(|(_, byte)| **byte == b'\n').nth(2).unwrap().0 + 1;
-        bytes[start..].chunks(12).map(<[u8]>::to_vec).collect::<Vec<_>>()
-    };
-    let (whole, part) = (pixels("whole.pfm"), pixels("part.pfm"));
+    let (whole, part) = (pfm(&folder, "whole.pfm"), pfm(&folder, "part.pfm"));
     for (index, pixel) in part.iter().enumerate() {
-        // A PFM begins with the bottom row.
         let (x, y) = (5 + index % 7, 4 + (5 - index / 7));
         assert_eq!(*pixel, whole[(15 - y) * 24 + x], "{x} {y}");
     }
+}
+
+#[test]
+fn a_downsampled_image_is_the_mean_of_the_larger_one() {
+    let folder = folder();
+    let flags = "--spp 33 --shadow-rays 2 --json -q";
+    json(&folder, &format!("render room.toml -o large.pfm --size 48x32 --crop 8,4,20,12 {flags}"));
+    let small = json(&folder, &format!("render room.toml -o small.pfm --downsample 2 --crop 4,2,10,6 {flags}"));
+    let (large, image) = (pfm(&folder, "large.pfm"), pfm(&folder, "small.pfm"));
+    assert_eq!((large.len(), image.len()), (20 * 12, 10 * 6));
+    for (index, pixel) in image.iter().enumerate() {
+        let first = index / 10 * 2 * 20 + index % 10 * 2;
+        for c in 0..3 {
+            let sum: f64 = [0, 1, 20, 21].iter().map(|next| f64::from(large[first + next][c])).sum();
+            assert_eq!(pixel[c], (sum / 4.0) as f32, "{index}");
+        }
+    }
+    assert_eq!((&small["width"], &small["height"], &small["downsample"]), (&24.into(), &16.into(), &2.into()));
+    let line = small["reproduce"].as_str().unwrap().strip_prefix("smalti ").unwrap().to_owned();
+    assert_eq!(small["hash"], json(&folder, &format!("{line} --json -q"))["hash"]);
 }
 
 #[test]
