@@ -71,7 +71,10 @@ pub fn check_place(path: &Path) -> Result<(), DestinationError> {
 
 /// Puts what `fill` writes in the place of `path`. Whatever goes wrong, and whenever the process is killed, `path` is
 /// what it was or the whole new file, and no other file is left unless it is killed.
-pub(crate) fn replace(path: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<()> {
+///
+/// # Errors
+/// What the system or `fill` answers.
+pub fn replace(path: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<()> {
     let target = resolve(path);
     let temporary = temporary_of(&target);
     let result = write_through(&temporary, fill).and_then(|()| fs::rename(&temporary, &target));

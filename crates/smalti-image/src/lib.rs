@@ -15,7 +15,7 @@ mod provenance;
 mod radiance;
 mod tone;
 
-pub use destination::{DestinationError, check_destination, check_place};
+pub use destination::{DestinationError, check_destination, check_place, replace};
 pub use difference::{Difference, difference, difference_scale};
 pub use file::{ReadError, WriteError, read, write};
 pub use format::{Format, FormatError};

@@ -17,6 +17,9 @@ pub struct Study {
     pub version: String,
     /// What was asked: `sweep`, `report`, `equal-time`, `equal-error`, `knobs`.
     pub preset: String,
+    /// The same in full, by the names of flags and of what else matters: whoever goes on must ask the same.
+    #[serde(default)]
+    pub question: BTreeMap<String, String>,
     /// The command that repeats it.
     pub command: String,
     /// The scene file as typed.
