@@ -8,6 +8,7 @@ use smalti_core::settings::{MOST_PHOTONS, MOST_SHADOW_RAYS, Rect};
 
 use crate::names::{ColourArg, FresnelArg, IntegratorArg, MapArg, SamplerArg, SimdArg};
 use crate::parse::{Size, parse_crop, parse_finite, parse_length, parse_size, parse_threads, parse_threshold};
+use crate::study::args::StudyArgs;
 
 /// A physically based CPU renderer for people who work in a terminal.
 #[derive(Debug, Parser)]
@@ -47,6 +48,8 @@ pub enum Command {
     Pixel(PixelArgs),
     /// Make a scene's photon map visible
     Photons(PhotonsArgs),
+    /// Measure the trade between speed and accuracy: sweeps, equal time, equal error, the report
+    Study(StudyArgs),
 }
 
 /// Arguments of `smalti render`.

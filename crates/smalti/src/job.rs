@@ -56,7 +56,7 @@ impl Job {
     }
 
     /// Reads `scene` and applies the flags, without a look at whether what they ask for can be rendered.
-    fn read(scene: &Path, flags: &ImageArgs, simd: SimdArg) -> Result<Self, Failure> {
+    pub fn read(scene: &Path, flags: &ImageArgs, simd: SimdArg) -> Result<Self, Failure> {
         let level = choose_level(simd, &Level::available())?;
         let loaded = smalti_scene::load(scene).map_err(|error| Failure::scene(&error))?;
         let settings = merge(loaded.settings.settings(), flags, &loaded.world)?;
@@ -141,7 +141,7 @@ fn find_camera(name: &str, world: &World) -> Result<usize, Failure> {
 }
 
 /// The candidate most like `name`, if any is like it at all; the first of equals.
-fn nearest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
+pub fn nearest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
     let mut best = (0.75, None);
     for &candidate in candidates {
         let likeness = strsim::jaro_winkler(&name.to_lowercase(), &candidate.to_lowercase());

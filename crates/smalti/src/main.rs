@@ -19,6 +19,7 @@ mod print;
 mod provenance;
 mod record;
 mod reproduce;
+mod study;
 mod summary;
 mod table;
 

@@ -194,8 +194,8 @@ fn lacks_point_caustics(settings: &Settings, world: &World) -> bool {
         && has(Material::is_specular)
 }
 
-/// What more samples would not mend.
-fn biases(settings: &Settings, world: &World, capped: u64) -> Vec<String> {
+/// What more samples would not mend; `capped` paths were ended by the hard cap on bounces.
+pub fn biases(settings: &Settings, world: &World, capped: u64) -> Vec<String> {
     let mut biases = Vec::new();
     if settings.integrator == Integrator::Whitted {
         let least = 1.0 / LEAST_CONTRIBUTION;

@@ -6,6 +6,7 @@ mod photons;
 mod pixel;
 mod render;
 mod scaling;
+mod study;
 
 use std::process::ExitCode;
 use std::time::Instant;
@@ -25,6 +26,7 @@ pub fn run(cli: &Cli, start: Instant) -> ExitCode {
         Command::Compare(args) => compare::run(args),
         Command::Pixel(args) => pixel::run(args),
         Command::Photons(args) => photons::run(args, cli.color, start),
+        Command::Study(args) => study::run(args, cli.color),
     };
     match ended {
         Ok(status) => status.into(),
@@ -40,6 +42,7 @@ fn wants_json_lines(command: &Command) -> bool {
     match command {
         Command::Render(args) => args.run.progress == ProgressArg::Json,
         Command::Photons(args) => args.run.progress == ProgressArg::Json,
+        Command::Study(args) => args.preset.common().progress == ProgressArg::Json,
         _ => false,
     }
 }

@@ -13,7 +13,7 @@ mod bars;
 mod fixture;
 mod frame;
 mod json;
-mod numbers;
+pub mod numbers;
 mod pace;
 mod pen;
 mod picture;
