@@ -71,25 +71,11 @@ fn given(common: &CommonArgs, plan: &Plan) -> Result<Option<Vec<Truth>>, Failure
 /// Does what is missing of a study; returns it with what is told of it.
 fn perform(performance: &mut Performance, there: Option<Study>, question: Question) -> Result<(Study, String), Halt> {
     let (arms, renders) = (performance.plan.arms.len(), study::interleaved(&performance.repetitions).len());
-    let mut study = match there {
-        Some(study) => {
-            performance.adopt(&study)?;
-            let done = study.runs.len();
-            performance.progress.say(&format!("{arms} arms, {renders} renders; {done} are there already"));
-            study
-        }
-        None => {
-            performance.progress.say(&format!("{arms} arms, {renders} renders"));
-            performance.folder.make()?;
-            performance.calibrate()?;
-            let study = performance.begin(question, typed())?;
-            performance.folder.save(&study)?;
-            study
-        }
-    };
-    let truths = performance.find_truth(&mut study)?;
-    performance.render(&mut study, &truths)?;
-    let text = performance.present(&study)?;
+    let done = there.as_ref().map_or(0, |study| study.runs.len());
+    let before = if done > 0 { format!("; {done} are there already") } else { String::new() };
+    performance.progress.say(&format!("{arms} arms, {renders} renders{before}"));
+    let mut study = there.map_or_else(|| performance.begin(question, typed()), Ok)?;
+    let text = performance.perform(&mut study)?;
     Ok((study, text))
 }
 

@@ -98,7 +98,7 @@ pub struct EqualTimeArgs {
     #[command(flatten)]
     pub common: CommonArgs,
     /// How long each render takes, about
-    #[arg(long, value_name = "S", value_parser = parse_seconds, default_value = "1")]
+    #[arg(long, value_name = "S", value_parser = parse_seconds, default_value = "1", allow_hyphen_values = true)]
     pub seconds: f64,
     #[command(flatten)]
     pub knobs: KnobLists,
@@ -110,7 +110,7 @@ pub struct EqualErrorArgs {
     #[command(flatten)]
     pub common: CommonArgs,
     /// The relative error of each render, about: 3% or 0.03; noise alone, a bias comes on top
-    #[arg(long, value_name = "E", value_parser = parse_share, default_value = "3%")]
+    #[arg(long, value_name = "E", value_parser = parse_share, default_value = "3%", allow_hyphen_values = true)]
     pub error: f64,
     #[command(flatten)]
     pub knobs: KnobLists,

@@ -109,8 +109,7 @@ impl Folder {
     /// Removes what a study left.
     fn clear(&self, study: &Study) {
         let images = study.arms.iter().flat_map(|arm| [arm.picture.as_ref(), arm.image.as_ref()]).flatten();
-        let references = study.references.iter().filter(|reference| reference.command.is_some());
-        for name in images.chain(references.map(|reference| &reference.file)) {
+        for name in images.chain(study.references.iter().map(|reference| &reference.file)) {
             // What is gone already is gone.
             let _ = fs::remove_file(self.file(name));
         }

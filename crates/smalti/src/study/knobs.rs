@@ -171,14 +171,18 @@ impl Knob {
 
     /// The value in words: `64 spp`, `1 shadow ray`.
     pub fn in_words(&self, value: &str) -> String {
-        let words = self.words.replace('#', value);
-        if value == "1" { words.strip_suffix('s').map_or(words.clone(), String::from) } else { words }
+        say(self.words, value)
     }
 
     /// The value as a part of a file's name: `64spp`.
     pub fn in_short(&self, value: &str) -> String {
-        self.short.replace('#', value)
+        say(self.short, value)
     }
+}
+
+fn say(words: &str, value: &str) -> String {
+    let words = if value == "1" { words.strip_suffix('s').unwrap_or(words) } else { words };
+    words.replace('#', value)
 }
 
 fn always(_: &Way, _: &World) -> bool {

@@ -9,6 +9,7 @@
 
 pub mod args;
 mod bench;
+mod calibrate;
 mod combine;
 mod folder;
 mod knobs;
@@ -26,6 +27,7 @@ mod reference;
 mod report;
 mod results;
 mod tables;
+mod truth;
 mod way;
 
 pub use bench::{Bench, Halt, check};

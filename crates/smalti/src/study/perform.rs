@@ -1,17 +1,16 @@
-//! A study from its plan to its last render. What is done is kept after every step, and found again by who goes on.
+//! A study from its plan to its last render. What is done is kept after every step, and found again by whoever goes on.
 
 use smalti_image::Provenance;
-use smalti_report::{Arm, FORMAT, Machine, Reference, Run, Study};
+use smalti_report::{Arm, FORMAT, Machine, Run, Study};
 
 use super::bench::{Bench, Halt, Rendered};
 use super::folder::Folder;
 use super::naming::{self, Named};
-use super::pilot::{self, Pilot, Pilots};
-use super::plan::{Budget, Plan, interleaved};
+use super::pilot::Pilots;
+use super::plan::{Plan, interleaved};
 use super::progress::Progress;
 use super::question::Question;
-use super::reference::{self, Family, Truth};
-use super::way::Way;
+use super::reference::Truth;
 use super::{measure, present};
 use crate::exit::Failure;
 use crate::job::Job;
@@ -40,54 +39,35 @@ pub struct Performance<'a> {
 }
 
 impl Performance<'_> {
-    /// Finds the samples of every arm, where the plan does not say them.
+    /// Does what is missing of a study, and says what it found.
     ///
     /// # Errors
-    /// It was interrupted.
-    pub fn calibrate(&mut self) -> Result<(), Halt> {
-        for index in 0..self.plan.arms.len() {
-            let way = self.plan.arms[index].way.clone();
-            let spp = match self.plan.budget {
-                Budget::Samples => continue,
-                Budget::Seconds(seconds) => {
-                    let pilot = self.pilot(&way)?;
-                    pilot::fit_time(&way, pilot, seconds, &mut self.bench)?
-                }
-                Budget::Error(error) => self.pilot(&way)?.samples_for(&way, error),
-            };
-            self.plan.arms[index].way.image.spp = spp;
+    /// It was interrupted, or something could not be written.
+    pub fn perform(&mut self, study: &mut Study) -> Result<String, Halt> {
+        let is_new = study.arms.is_empty();
+        if is_new {
+            self.calibrate()?;
+        } else {
+            self.adopt(study)?;
         }
-        Ok(())
+        let truths = self.find_truth(study)?;
+        if is_new {
+            self.refine(&truths)?;
+            study.arms = arms(&self.plan, self.bench.job)?;
+            self.folder.save(study)?;
+        }
+        self.render(study, &truths)?;
+        Ok(present::present(study, self.folder)?)
     }
 
-    fn pilot(&mut self, way: &Way) -> Result<Pilot, Halt> {
-        self.progress.begin(&format!("short renders: {}", way.image.integrator.name()), None);
-        self.pilots.of(way, &mut self.bench)
-    }
-
-    /// Takes over the samples that an earlier part of the study chose.
+    /// A study of which nothing is known yet but what was asked; it is kept from here on.
     ///
     /// # Errors
-    /// A record that somebody changed.
-    pub fn adopt(&mut self, study: &Study) -> Result<(), Failure> {
-        let damaged = || Failure::user("the study's arms are not those of its question; --fresh begins anew");
-        if study.arms.len() != self.plan.arms.len() {
-            return Err(damaged());
-        }
-        for (planned, arm) in self.plan.arms.iter_mut().zip(&study.arms) {
-            planned.way.image.spp = arm.knobs.get("spp").and_then(|spp| spp.parse().ok()).ok_or_else(damaged)?;
-        }
-        Ok(())
-    }
-
-    /// A study of which nothing is rendered yet.
-    ///
-    /// # Errors
-    /// A way that cannot be rendered.
+    /// The folder cannot be written.
     pub fn begin(&self, question: Question, command: String) -> Result<Study, Failure> {
         let job = self.bench.job;
         let system = format!("{} {}", std::env::consts::OS, std::env::consts::ARCH);
-        Ok(Study {
+        let study = Study {
             format: FORMAT,
             version: env!("CARGO_PKG_VERSION").into(),
             preset: self.plan.preset.into(),
@@ -97,112 +77,20 @@ impl Performance<'_> {
             scene_hash: job.scene_hash.clone(),
             machine: Machine { cores: super::way::cores(), simd: job.level.name().into(), system },
             references: Vec::new(),
-            arms: arms(&self.plan, job)?,
+            arms: Vec::new(),
             baseline: self.plan.baseline,
             runs: Vec::new(),
-        })
-    }
-
-    /// Sees to it that there is a truth for every size, from the folder or rendered now.
-    ///
-    /// # Errors
-    /// It was interrupted, or could not be written.
-    pub fn find_truth(&mut self, study: &mut Study) -> Result<Vec<Truth>, Halt> {
-        let sizes: Vec<[u32; 2]> = self.plan.arms.iter().map(|arm| arm.way.size()).collect();
-        let truths = match self.given.take() {
-            Some(given) => given,
-            None if !study.references.is_empty() => {
-                if let Some(kept) = reference::kept(&study.references, &sizes, self.folder) {
-                    return Ok(kept);
-                }
-                let gone = "a reference is gone from the study's folder; --fresh begins anew";
-                return Err(Failure::user(gone).into());
-            }
-            None => self.render_truth(&sizes)?,
         };
-        study.references = truths.iter().map(|truth| truth.record.clone()).collect();
-        self.folder.save(study)?;
-        Ok(truths)
-    }
-
-    fn render_truth(&mut self, sizes: &[[u32; 2]]) -> Result<Vec<Truth>, Halt> {
-        let families = reference::families(sizes.to_vec());
-        let seconds = self.plan.reference_share * self.seconds_of_all()? / families.len() as f64;
-        let mut truths = Vec::new();
-        for family in &families {
-            let best: Vec<Option<f64>> = family.iter().map(|size| self.best(*size)).collect::<Result<_, _>>()?;
-            let way = self.reference_way(family, &best, seconds)?;
-            let [width, height] = family[0];
-            let what = format!("reference, {width}x{height}, {} spp", way.image.spp);
-            let expected = self.pilot(&way)?.seconds(&way);
-            self.progress.say(&format!("{what}, about {expected:.0} s"));
-            self.progress.begin(&what, None);
-            let made = reference::made(&way, family, &mut self.bench, self.folder)?;
-            made.iter().zip(&best).for_each(|(truth, best)| self.judge(&truth.record, *best));
-            truths.extend(made);
-        }
-        Ok(truths)
-    }
-
-    fn reference_way(&mut self, family: &Family, best: &[Option<f64>], seconds: f64) -> Result<Way, Halt> {
-        let scene = &self.plan.arms[0].way.clone();
-        let mut way = reference::way(scene, family, 1);
-        way.image.spp = match self.reference_spp {
-            Some(spp) => spp,
-            None => {
-                let pilot = self.pilot(&way)?;
-                let needed = pilot.noise.map_or(u32::MAX, |noise| reference::needed(noise, family, best));
-                reference::samples(needed, pilot.samples_in(&way, seconds))
-            }
-        };
-        super::bench::check(&way)?;
-        Ok(way)
-    }
-
-    /// The least squared error that noise leaves any arm of a size; arms with a bias as well only where all have one.
-    fn best(&mut self, size: [u32; 2]) -> Result<Option<f64>, Halt> {
-        let of_size = |way: &&Way| way.size() == size;
-        let ways: Vec<Way> = self.plan.arms.iter().map(|arm| &arm.way).filter(of_size).cloned().collect();
-        let world = &self.bench.job.world;
-        let (fair, biased): (Vec<Way>, Vec<Way>) =
-            ways.into_iter().partition(|way| summary::biases(&way.image, world, 0).is_empty());
-        let mut best: Option<f64> = None;
-        for way in if fair.is_empty() { biased } else { fair } {
-            let error = self.pilot(&way)?.squared_error(&way);
-            best = best.into_iter().chain(error).reduce(f64::min);
-        }
-        Ok(best)
-    }
-
-    /// Says of a reference that is not as good as wanted.
-    fn judge(&self, record: &Reference, best: Option<f64>) {
-        let (Some(own), Some(best)) = (record.relative_error_squared, best) else { return };
-        if own > reference::FIFTH * best {
-            let [width, height] = record.size;
-            self.progress.say(&format!(
-                "the reference of {width}x{height} has a squared error of about {:.2} of the best arm's; errors are \
-                 freed of it, but {:.1} would be better: --reference-spp N takes more time for it",
-                own / best,
-                reference::FIFTH
-            ));
-        }
-    }
-
-    /// How long all renders will take, by pilots.
-    fn seconds_of_all(&mut self) -> Result<f64, Halt> {
-        let mut all = 0.0;
-        for (index, repetitions) in self.repetitions.clone().into_iter().enumerate() {
-            let way = self.plan.arms[index].way.clone();
-            all += f64::from(repetitions) * self.pilot(&way)?.seconds(&way);
-        }
-        Ok(all)
+        self.folder.make()?;
+        self.folder.save(&study)?;
+        Ok(study)
     }
 
     /// Renders what is missing, in its order, and keeps it.
     ///
     /// # Errors
     /// It was interrupted, or something could not be written.
-    pub fn render(&mut self, study: &mut Study, truths: &[Truth]) -> Result<(), Halt> {
+    fn render(&mut self, study: &mut Study, truths: &[Truth]) -> Result<(), Halt> {
         let missing = missing(&self.repetitions, &study.runs);
         for (done, &(arm, repetition)) in missing.iter().enumerate() {
             let rest = rest(&missing[done..], &study.runs);
@@ -233,14 +121,6 @@ impl Performance<'_> {
         let [picture, linear] = self.folder.write_image(&arm.name, image, &provenance, self.exposure)?;
         (arm.picture, arm.image) = (Some(picture), Some(linear));
         Ok(())
-    }
-
-    /// Says what the study found.
-    ///
-    /// # Errors
-    /// Something cannot be written.
-    pub fn present(&self, study: &Study) -> Result<String, Failure> {
-        present::present(study, self.folder)
     }
 }
 

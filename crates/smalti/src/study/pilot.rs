@@ -92,14 +92,14 @@ impl Pilots {
         if let Some((_, pilot)) = self.0.iter().find(|(other, _)| *other == small) {
             return Ok(*pilot);
         }
-        let pilot = Pilot::of(&small, &bench.render(&small, PILOT_SEED)?);
+        let pilot = Pilot::of(&small, &bench.render(&small, SEED)?);
         self.0.push((small, pilot));
         Ok(pilot)
     }
 }
 
-/// No repetition has it unless asked to.
-const PILOT_SEED: u64 = 0x7069_6c6f_7400_0000;
+/// The seed of pilots and trials: no repetition has it unless asked to.
+pub const SEED: u64 = 0x7069_6c6f_7400_0000;
 
 /// The way with few pixels and just enough samples to state an error; photons stay as many as they are.
 fn small(way: &Way) -> Way {
@@ -120,8 +120,14 @@ fn small(way: &Way) -> Way {
 pub fn fit_time(way: &Way, pilot: Pilot, seconds: f64, bench: &mut Bench) -> Result<u32, Halt> {
     let mut trial = way.clone();
     trial.image.spp = pilot.samples_in(way, seconds * TRIAL);
-    let rendered = bench.render(&trial, PILOT_SEED)?;
+    let rendered = bench.render(&trial, SEED)?;
     Ok(Pilot::of(&trial, &rendered).samples_in(way, seconds))
+}
+
+/// The samples that bring a squared error down by `ratio`, from `samples` that have it; by a factor of 16 at most, as
+/// one render says only so much.
+pub fn corrected(samples: u32, ratio: f64) -> u32 {
+    (f64::from(samples) * ratio.clamp(1.0 / 16.0, 16.0)).round().clamp(1.0, MOST) as u32
 }
 
 /// A trial takes this part of the time that is aimed at.
@@ -170,6 +176,14 @@ mod tests {
         let error = PILOT.squared_error(&way(64, 1)).unwrap().sqrt();
         assert!((error - 0.1).abs() < 1e-12);
         assert_eq!(PILOT.squared_error(&way(16, 2)), PILOT.squared_error(&way(64, 1)));
+    }
+
+    #[test]
+    fn samples_are_corrected_in_proportion_to_the_squared_error() {
+        assert_eq!(
+            [(10, 6.76), (10, 0.5), (1, 0.01), (10, 1e9)].map(|(n, ratio)| corrected(n, ratio)),
+            [68, 5, 1, 160]
+        );
     }
 
     #[test]

@@ -6,6 +6,7 @@ use super::args::{Preset, ReportArgs, SweepArgs};
 use super::combine::{self, turned};
 use super::knobs::Knob;
 use super::lists::KnobLists;
+use super::naming::Named;
 use super::plan::{Budget, Plan, Planned};
 use super::report;
 use super::way::Way;
@@ -54,23 +55,44 @@ fn equal(preset: &'static str, budget: Budget, lists: &KnobLists, scene: &Way, w
     let rays = if own > 1 { vec!["1".into(), own.to_string()] } else { vec!["1".into(), "4".into()] };
     let integrators = (Knob::named("integrator").around)(scene);
     let lists = lists.clone().or("integrator", integrators).or("shadow-rays", rays);
-    let ways = combine::combinations(scene, &lists, world)?;
-    Ok(Plan { budget, ..Plan::of(preset, ways, None) })
+    let mut plan = Plan { budget, ..Plan::of(preset, combine::combinations(scene, &lists, world)?, None) };
+    for arm in &mut plan.arms {
+        arm.group = Some(arm.way.image.integrator.name().into());
+    }
+    Ok(plan)
 }
 
 fn knobs(args: &SweepArgs, scene: &Way, world: &World) -> Result<Plan, Failure> {
     let base = args.knobs.first(scene)?;
     let ways = combine::one_at_a_time(&base, &args.knobs, world)?;
-    let arm = |(way, knob): (Way, Option<&str>)| Planned {
-        group: Some(knob.unwrap_or("baseline").into()),
-        ..Planned::new(way)
-    };
-    let arms = ways.into_iter().map(arm).collect();
+    let arms = ways.into_iter().map(|(way, knob)| turned_once(way, knob)).collect();
     Ok(Plan { arms, ..Plan::of("knobs", Vec::new(), Some(0)) })
+}
+
+/// An arm that differs from the baseline in a knob, called by its value; or the baseline itself.
+fn turned_once(way: Way, knob: Option<&'static str>) -> Planned {
+    let told = ["integrator", "spp", "shadow-rays"].map(Knob::named);
+    let named = match knob.map(Knob::named) {
+        None => {
+            let words: Vec<String> = told.iter().map(|knob| knob.in_words(&(knob.get)(&way))).collect();
+            Named {
+                name: "baseline".into(),
+                label: format!("baseline: {}", words.join(", ")),
+                group: "baseline".into(),
+            }
+        }
+        Some(knob) => {
+            let value = (knob.get)(&way);
+            Named { name: knob.in_short(&value), label: knob.in_words(&value), group: knob.name.into() }
+        }
+    };
+    Planned { named: Some(named), ..Planned::new(way) }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use clap::Parser;
 
     use super::*;
@@ -104,10 +126,13 @@ mod tests {
     #[test]
     fn knobs_are_turned_around_the_first_values() {
         let found = plan("smalti study knobs a.toml --spp 16,2 --integrator auto").unwrap();
-        assert_eq!((found.baseline, found.arms[0].group.as_deref()), (Some(0), Some("baseline")));
+        let group = |arm: &Planned| arm.named.as_ref().unwrap().group.clone();
+        assert_eq!((found.baseline, group(&found.arms[0]).as_str()), (Some(0), "baseline"));
         assert_eq!((found.arms[0].way.image.spp, found.arms[0].way.image.integrator.name()), (16, "auto"));
-        let spp = found.arms.iter().filter(|arm| arm.group.as_deref() == Some("spp"));
+        let spp = found.arms.iter().filter(|arm| group(arm) == "spp");
         assert_eq!(spp.map(|arm| arm.way.image.spp).collect::<Vec<_>>(), [2]);
-        assert!(found.arms.iter().any(|arm| arm.group.as_deref() == Some("photons")));
+        assert!(found.arms.iter().any(|arm| group(arm) == "photons"));
+        let names: BTreeSet<_> = found.arms.iter().map(|arm| &arm.named.as_ref().unwrap().name).collect();
+        assert_eq!(names.len(), found.arms.len());
     }
 }

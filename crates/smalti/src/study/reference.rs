@@ -78,31 +78,38 @@ pub fn seed(of_study: u64) -> u64 {
     of_study ^ 1 << 63
 }
 
-/// Renders the references of a family and keeps them.
+/// Renders the references of a family.
 ///
 /// # Errors
-/// It was interrupted, or could not be written.
-pub fn made(way: &Way, family: &Family, bench: &mut Bench, folder: &Folder) -> Result<Vec<Truth>, Halt> {
+/// It was interrupted.
+pub fn made(way: &Way, family: &Family, bench: &mut Bench) -> Result<Vec<Truth>, Halt> {
     let (settings, outcome) = bench.expose(way, seed(way.image.seed))?;
     let mut truths = Vec::new();
     for size in family {
         let by = factor(family[0], *size).unwrap_or(1);
         let developed = bench.develop(way, &outcome, by)?;
         let command = reproduce::command(&bench.job.path, (&settings, by), settings.spp, bench.job.camera());
-        let record = record(*size, command, developed.error);
-        let written = smalti_image::write(&folder.file(&record.file), &developed.image, &Provenance::new(), 0.0);
-        written.map_err(Failure::output)?;
+        let record = record(*size, Some(command), developed.error);
         truths.push(Truth { record, image: developed.image });
     }
     Ok(truths)
 }
 
-fn record(size: [u32; 2], command: String, error: Option<ErrorStatement>) -> Reference {
+/// Keeps a reference in the folder.
+///
+/// # Errors
+/// It cannot be written.
+pub fn keep(truth: &Truth, folder: &Folder) -> Result<(), Failure> {
+    let path = folder.file(&truth.record.file);
+    smalti_image::write(&path, &truth.image, &Provenance::new(), 0.0).map_err(Failure::output)
+}
+
+fn record(size: [u32; 2], command: Option<String>, error: Option<ErrorStatement>) -> Reference {
     let [width, height] = size;
     Reference {
         size,
         file: format!("reference-{width}x{height}.pfm"),
-        command: Some(command),
+        command,
         relmse: error.map(|error| error.relmse),
         relative_error_squared: error.map(|error| error.relative_error * error.relative_error),
     }
@@ -117,9 +124,7 @@ pub fn given(path: &Path, sizes: &[[u32; 2]]) -> Result<Vec<Truth>, Failure> {
     let whole = [image.width, image.height];
     let of_size = |size: &[u32; 2]| {
         let by = factor(whole, *size).ok_or_else(|| misfit(path, whole, *size))?;
-        let file = path.display().to_string();
-        let record = Reference { size: *size, file, command: None, relmse: None, relative_error_squared: None };
-        Ok(Truth { record, image: image.clone().downsampled(by) })
+        Ok(Truth { record: record(*size, None, None), image: image.clone().downsampled(by) })
     };
     sizes.iter().map(of_size).collect()
 }
@@ -143,15 +148,18 @@ pub fn kept(records: &[Reference], sizes: &[[u32; 2]], folder: &Folder) -> Optio
     sizes.iter().all(|size| truths.iter().any(|truth| truth.record.size == *size)).then_some(truths)
 }
 
-/// What a reference's noise is to the best arm's, squares of both: less than a fifth is as good as none.
+/// What a reference's noise may be to the best arm's, squares of both.
 pub const FIFTH: f64 = 0.2;
+
+/// What is aimed at, as pilots are a guess.
+const AIM: f64 = 0.16;
 
 /// The samples that make a reference good enough for every size: `noise` is the square of its relative error with one
 /// sample, `best` that of the best arm of each size of the family.
 pub fn needed(noise: f64, family: &Family, best: &[Option<f64>]) -> u32 {
     let of = |(size, best): (&[u32; 2], &Option<f64>)| {
         let by = f64::from(factor(family[0], *size).unwrap_or(1));
-        best.map_or(0.0, |best| noise / (by * by * FIFTH * best))
+        best.map_or(0.0, |best| noise / (by * by * AIM * best))
     };
     family.iter().zip(best).map(of).fold(1.0, f64::max).ceil() as u32
 }
@@ -178,10 +186,10 @@ mod tests {
     #[test]
     fn a_reference_has_a_fifth_of_the_best_arms_squared_error() {
         let family = vec![[8, 8], [4, 4]];
-        // 0.8 / 0.2 / 0.05: 80 samples; a quarter of the noise after down-sampling.
-        assert_eq!(needed(0.8, &family, &[Some(0.05), None]), 80);
-        assert_eq!(needed(0.8, &family, &[Some(0.05), Some(0.01)]), 100);
-        assert_eq!(needed(0.8, &family, &[None, None]), 1);
+        // 0.64 / 0.16 / 0.05: 80 samples; a quarter of the noise after down-sampling.
+        assert_eq!(needed(0.64, &family, &[Some(0.05), None]), 80);
+        assert_eq!(needed(0.64, &family, &[Some(0.05), Some(0.01)]), 100);
+        assert_eq!(needed(0.64, &family, &[None, None]), 1);
     }
 
     #[test]

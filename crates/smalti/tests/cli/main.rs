@@ -6,5 +6,6 @@ mod photon_map;
 mod photons;
 mod render;
 mod room;
+mod study;
 #[cfg(unix)]
 mod unix;

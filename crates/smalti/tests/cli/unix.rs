@@ -13,12 +13,17 @@ use signal_hook::flag::register_conditional_shutdown;
 
 #[cfg(target_os = "linux")]
 use crate::room::stderr;
-use crate::room::{command, folder};
+use crate::room::{command, folder, json};
 
 const LONG: &str = "render room.toml --spp 1000000 --progress json --json -o a.pfm";
 
 /// Starts a render that takes long and waits until a pass of it is done.
 fn start(command: &mut Command) -> (Child, BufReader<ChildStderr>) {
+    start_until(command, "pass_finished")
+}
+
+/// Starts what takes long and waits until it tells of `fact`.
+fn start_until(command: &mut Command, fact: &str) -> (Child, BufReader<ChildStderr>) {
     // What this process ignores (in the background, under nohup) its children would ignore too; what it handles,
     // they do not.
     for signal in [SIGHUP, SIGINT, SIGTERM] {
@@ -27,7 +32,7 @@ fn start(command: &mut Command) -> (Child, BufReader<ChildStderr>) {
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut events = BufReader::new(child.stderr.take().unwrap());
     let mut event = String::new();
-    while !event.contains("pass_finished") {
+    while !event.contains(fact) {
         event.clear();
         assert!(events.read_line(&mut event).unwrap() > 0, "it ended");
     }
@@ -54,6 +59,26 @@ fn an_interrupt_keeps_the_picture() {
         assert_eq!((&summary["stopped_by"], &summary["target_reached"]), (&"interrupt".into(), &false.into()));
         assert!(summary["samples_least"].as_u64() > Some(0));
     }
+}
+
+#[test]
+fn an_interrupted_study_is_kept_and_goes_on() {
+    let folder = folder();
+    let line =
+        "study sweep room.toml --integrator path --spp 1,2 --reps 4000 --reference-spp 64 -o out --progress json";
+    let mut command = command(folder.path(), line);
+    let (child, mut events) = start_until(&mut command, "run_finished");
+    send("-INT", &child);
+    let mut rest = String::new();
+    events.read_to_string(&mut rest).unwrap();
+    assert_eq!(child.wait_with_output().unwrap().status.code(), Some(130), "{rest}");
+    assert!(rest.contains("interrupted by SIGINT") && rest.contains("the same command goes on"), "{rest}");
+    let text = std::fs::read_to_string(folder.path().join("out/study.json")).unwrap();
+    let done = serde_json::from_str::<Value>(&text).unwrap()["runs"].as_array().unwrap().len();
+    assert!((1..8000).contains(&done));
+    let more = format!("{} --json", line.replace("4000", &(done / 2 + 1).to_string()));
+    let study = json(&folder, &more);
+    assert_eq!(study["runs"].as_array().unwrap().len(), 2 * (done / 2 + 1));
 }
 
 #[test]
