@@ -1,13 +1,12 @@
 //! What can be turned: one table for the command line, the arms, their names and what is tried of each knob.
 
-use clap::ValueEnum;
 use smalti_core::scene::World;
 use smalti_core::scene::world::Material;
-use smalti_core::settings::{MOST_PHOTONS, MOST_SHADOW_RAYS};
+use smalti_core::settings::MOST_SHADOW_RAYS;
 
-use super::way::{Way, cores};
-use crate::args::{MAX_THREADS, MOST_DOWNSAMPLE};
-use crate::job;
+use super::values::{choice, half_and_twice, names, on_or_off, or_none, photons, threads, whole};
+use super::way::Way;
+use crate::args::MOST_DOWNSAMPLE;
 use crate::names::{FresnelArg, IntegratorArg, SamplerArg};
 use crate::parse;
 
@@ -193,56 +192,12 @@ fn in_words(value: Option<impl ToString>) -> String {
     value.map_or("none".into(), |value| value.to_string())
 }
 
-fn half_and_twice(value: u32) -> Vec<String> {
-    [value / 2, value.saturating_mul(2)].into_iter().filter(|&near| near > 0).map(|near| near.to_string()).collect()
-}
-
-fn names<N: ValueEnum>() -> Vec<String> {
-    N::value_variants().iter().filter_map(|name| Some(name.to_possible_value()?.get_name().to_owned())).collect()
-}
-
-fn choice<N: ValueEnum>(text: &str) -> Result<N, String> {
-    N::from_str(text, false).map_err(|_| {
-        let names = names::<N>();
-        let known: Vec<&str> = names.iter().map(String::as_str).collect();
-        let meant = job::nearest(text, &known).map_or(String::new(), |name| format!("; did you mean '{name}'?"));
-        format!("'{text}' is none of {}{meant}", names.join(", "))
-    })
-}
-
-fn whole(text: &str, least: u32, most: u32) -> Result<u32, String> {
-    let number: Option<u32> = text.parse().ok();
-    number
-        .filter(|number| (least..=most).contains(number))
-        .ok_or_else(|| format!("'{text}' is no whole number from {least} to {most}"))
-}
-
-fn or_none<T>(text: &str, read: impl Fn(&str) -> Result<T, String>) -> Result<Option<T>, String> {
-    if text == "none" { Ok(None) } else { read(text).map(Some).map_err(|message| format!("{message}, or 'none'")) }
-}
-
-fn on_or_off(text: &str) -> Result<bool, String> {
-    match text {
-        "on" => Ok(true),
-        "off" => Ok(false),
-        _ => Err(format!("'{text}' is neither 'on' nor 'off'")),
-    }
-}
-
-fn photons(text: &str) -> Result<Option<u32>, String> {
-    if text == "auto" { Ok(None) } else { whole(text, 0, MOST_PHOTONS).map(Some).map_err(|m| m + ", nor 'auto'") }
-}
-
-fn threads(text: &str) -> Result<usize, String> {
-    let typed = || whole(text, 1, MAX_THREADS as u32).map_err(|message| message + ", nor 'max'");
-    if text == "max" { Ok(cores()) } else { typed().map(|threads| threads as usize) }
-}
-
 #[cfg(test)]
 mod tests {
     use smalti_core::settings::{Integrator, Settings};
 
     use super::*;
+    use crate::study::way::cores;
 
     fn way() -> Way {
         let image = Settings { integrator: Integrator::Auto, ..Settings::default() };

@@ -28,6 +28,7 @@ mod report;
 mod results;
 mod tables;
 mod truth;
+mod values;
 mod way;
 
 pub use bench::{Bench, Halt, check};

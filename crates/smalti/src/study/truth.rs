@@ -1,5 +1,7 @@
 //! How good the truth must be: the references of a study, found in its folder, taken as given or rendered.
 
+use std::time::Duration;
+
 use smalti_report::{Reference, Study};
 
 use super::bench::{self, Halt};
@@ -7,6 +9,7 @@ use super::perform::Performance;
 use super::reference::{self, Family, Truth};
 use super::way::Way;
 use crate::exit::Failure;
+use crate::frontend::numbers;
 use crate::summary;
 
 impl Performance<'_> {
@@ -38,9 +41,10 @@ impl Performance<'_> {
             let best: Vec<Option<f64>> = family.iter().map(|size| self.best(*size)).collect::<Result<_, _>>()?;
             let way = self.reference_way(family, &best, seconds)?;
             let [width, height] = family[0];
-            let what = format!("reference, {width}x{height}, {} spp", way.image.spp);
-            let expected = self.pilot(&way)?.seconds(&way);
-            self.progress.say(&format!("{what}, about {expected:.0} s"));
+            let expected = Duration::from_secs_f64(self.pilot(&way)?.seconds(&way));
+            let (spp, expected) = (way.image.spp, numbers::duration(expected));
+            let what = format!("reference, {width}x{height}, {spp} spp, about {expected}");
+            self.progress.say(&what);
             self.progress.begin(&what, None);
             let made = reference::made(&way, family, &mut self.bench)?;
             made.iter().zip(&best).for_each(|(truth, best)| self.judge(&truth.record, *best));

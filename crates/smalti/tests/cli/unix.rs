@@ -1,6 +1,5 @@
 //! Signals, readers that go away, full disks.
 
-#[cfg(target_os = "linux")]
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, ChildStderr, Command, Stdio};
@@ -73,7 +72,7 @@ fn an_interrupted_study_is_kept_and_goes_on() {
     events.read_to_string(&mut rest).unwrap();
     assert_eq!(child.wait_with_output().unwrap().status.code(), Some(130), "{rest}");
     assert!(rest.contains("interrupted by SIGINT") && rest.contains("the same command goes on"), "{rest}");
-    let text = std::fs::read_to_string(folder.path().join("out/study.json")).unwrap();
+    let text = fs::read_to_string(folder.path().join("out/study.json")).unwrap();
     let done = serde_json::from_str::<Value>(&text).unwrap()["runs"].as_array().unwrap().len();
     assert!((1..8000).contains(&done));
     let more = format!("{} --json", line.replace("4000", &(done / 2 + 1).to_string()));
