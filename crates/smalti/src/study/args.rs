@@ -19,21 +19,31 @@ pub struct StudyArgs {
 
 const EXAMPLES: &str = "\
 Examples:
-  smalti study sweep room.toml --integrator path,auto --spp 4,16,64   every combination
-  smalti study report scenes/hexroom.toml                             the report's Table 1 and its claims
-  smalti study equal-time room.toml --seconds 2                       who has least error after two seconds?
-  smalti study equal-error room.toml --error 3%                       who is first below three per cent?
-  smalti study knobs room.toml                                        what does each knob bring?
+  smalti study report scenes/hexroom.toml         the report's Table 1 and its claims
+  smalti study knobs room.toml                    what does each knob bring?
+  smalti study equal-time room.toml --seconds 2   who has least error after two seconds?
+  smalti study equal-error room.toml --error 3%   who is the first with an error of 3 %?
+  smalti study sweep room.toml --integrator path,auto --spp 4,16,64    every combination
 
-All arms are rendered once, then all again, each time with another seed; nothing else is computed meanwhile. Errors are
-those against a reference that the study renders itself, freed of its own noise. The folder keeps
-  study.json   everything; rewritten after every render, so that the same command goes on where it was stopped
-  runs.csv     a line for each render: arm, repetition, seed, seconds, photon_seconds, spp (rendered), rays, relmse and
-               relative_error against the reference, relmse_trimmed without the worst 0.1 % of pixels, stated_* what the
-               render said itself, mean_* of each channel, hash
-  arms.csv     a line for each arm: its knobs by their flags, median, least and most seconds, mean, least and most relmse,
-               relative_error (root of the mean square, least, most), efficiency = 1 / (relmse x seconds)
-  images       each arm's first image, .png and .pfm; reference-WxH.pfm beside them";
+All arms are rendered once, then all again with another seed; nothing else is computed meanwhile.
+Errors are those against a reference that the study renders too, freed of its noise.
+The folder keeps:
+  study.json   everything; written after every render, so that the same command goes on
+  images       each arm's first image, .png and .pfm; the references lie beside the folder of them
+  runs.csv     a line for each render:
+    arm, repetition, seed, hash     which it was; the hash is that of the image
+    seconds, photon_seconds         from the first sample to the last; the part of it for photons
+    spp, rays                       samples for each pixel that is rendered; rays of all kinds
+    relmse, relative_error          against the reference, freed of its own noise
+    relmse_trimmed                  without the worst 0.1 % of the pixels, not freed of anything
+    stated_...                      what the render said of itself, with its interval
+    mean_red, mean_green, mean_blue
+  arms.csv     a line for each arm:
+    name, label, group, then every knob by the name of its flag, width, height, runs
+    seconds                         the median; _least and _most of the repetitions
+    relmse                          the mean; _least and _most
+    relative_error                  the root of the mean square; _least and _most
+    efficiency                      1 / (relmse x seconds)";
 
 /// The presets.
 #[derive(Debug, Subcommand)]

@@ -1,6 +1,6 @@
 //! What is told of a study at its end.
 
-use smalti_report::Study;
+use smalti_report::{Arm, Reference, Study};
 
 use super::folder::Folder;
 use super::results::{self, ArmResult, Spread};
@@ -17,33 +17,51 @@ pub fn present(study: &Study, folder: &Folder) -> Result<String, Failure> {
 }
 
 fn text(study: &Study, folder: &Folder) -> String {
-    let arms = study.arms.len();
-    let heading = format!(
-        "{}: {} of {}, {arms} arms, {} renders\n",
-        folder.path().display(),
-        study.preset,
-        study.scene,
-        study.runs.len()
-    );
+    let (arms, renders) = (study.arms.len(), study.runs.len());
+    let place = folder.path().display();
+    let heading = format!("{place}: {} of {}, {arms} arms, {renders} renders\n", study.preset, study.scene);
+    heading + &arms_table(study) + &compared(study) + &references(study)
+}
+
+fn arms_table(study: &Study) -> String {
     let base = study.baseline.and_then(|arm| results::of(study, arm));
-    let mut rows = vec![
-        ["arm", "seconds", "relmse", "", "error", "", "efficiency", "time", "efficiency"].map(String::from).to_vec(),
-    ];
-    let row =
-        |(index, arm): (usize, &smalti_report::Arm)| Some(row(&arm.label, &results::of(study, index)?, base.as_ref()));
+    let headings = ["arm", "seconds", "relmse", "", "error", "", "efficiency", "x time", "x efficiency"];
+    let row = |(index, arm): (usize, &Arm)| Some(row(&arm.label, &results::of(study, index)?, base.as_ref()));
+    let mut rows = vec![headings.map(String::from).to_vec()];
     rows.extend(study.arms.iter().enumerate().filter_map(row));
-    let compared = match study.baseline {
-        Some(arm) => format!("  The last two columns are by those of {}.\n", study.arms[arm].label),
-        None => {
-            rows.iter_mut().for_each(|row| row.truncate(7));
-            String::new()
-        }
+    let columns = if base.is_some() { headings.len() } else { headings.len() - 2 };
+    rows.iter_mut().for_each(|row| row.truncate(columns));
+    let align: Vec<Align> = [Align::Left].into_iter().chain([Align::Right; 8]).take(columns).collect();
+    table(&align, &rows)
+}
+
+fn compared(study: &Study) -> String {
+    let by = study.baseline.map(|arm| format!("; x is by {}", study.arms[arm].label)).unwrap_or_default();
+    format!("  ranges are those of the repetitions; efficiency is 1 / (relmse x seconds){by}\n")
+}
+
+/// What the references leave uncertain.
+fn references(study: &Study) -> String {
+    let line = |reference: &Reference| {
+        let [width, height] = reference.size;
+        let best = best(study, reference.size);
+        let words = match (reference.relmse, best) {
+            (None, _) => "nothing is known of its own error".into(),
+            (Some(own), Some(best)) => {
+                format!("its own relmse, {own:.2e}, is taken off; {:.2} of the best arm's", own / best)
+            }
+            (Some(own), None) => format!("its own relmse, {own:.2e}, is taken off"),
+        };
+        format!("  reference of {width}x{height}: {words}\n")
     };
-    let align = [Align::Left].into_iter().chain([Align::Right; 8]).collect::<Vec<_>>();
-    heading
-        + &table(&align[..rows[0].len()], &rows)
-        + &compared
-        + "  Ranges are those of the repetitions; efficiency is 1 / (relmse x seconds).\n"
+    study.references.iter().map(line).collect()
+}
+
+/// The least relmse of the arms of a size.
+fn best(study: &Study, size: [u32; 2]) -> Option<f64> {
+    let of_size = (0..study.arms.len()).filter(|arm| study.arms[*arm].size == size);
+    let errors = of_size.filter_map(|arm| Some(results::of(study, arm)?.relmse.middle));
+    errors.reduce(f64::min).filter(|best| *best > 0.0)
 }
 
 fn row(label: &str, found: &ArmResult, base: Option<&ArmResult>) -> Vec<String> {
@@ -83,9 +101,23 @@ mod tests {
         let words: Vec<_> = line.split_whitespace().collect();
         // Twice the time, a quarter of the squared error.
         assert_eq!(words[3..], ["2.400", "1.000e-2", "10.00", "%", "4.167e1", "2.00", "2.00"]);
-        assert!(told.contains("are by those of path, 4 spp"), "{told}");
+        assert!(told.contains("; x is by path, 4 spp\n"), "{told}");
         let mut alone = study();
         alone.baseline = None;
-        assert!(!text(&alone, &folder).contains("by those of"));
+        assert!(!text(&alone, &folder).contains("x time"));
+    }
+
+    #[test]
+    fn references_are_told_by_what_they_leave_uncertain() {
+        let mut study = study();
+        let (size, file) = ([8, 8], "reference-8x8.pfm".to_owned());
+        let reference = Reference { size, file, command: None, relmse: Some(0.002), relative_error_squared: None };
+        study.references = vec![reference.clone(), Reference { relmse: None, size: [4, 4], ..reference }];
+        let told = references(&study);
+        assert!(
+            told.contains("reference of 8x8: its own relmse, 2.00e-3, is taken off; 0.20 of the best arm's"),
+            "{told}"
+        );
+        assert!(told.contains("reference of 4x4: nothing is known"), "{told}");
     }
 }

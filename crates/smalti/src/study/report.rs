@@ -97,9 +97,9 @@ fn turn(row: &Row, comparison: &Way) -> Result<Way, Failure> {
 }
 
 fn planned(row: &Row, way: Way) -> Planned {
+    let usual = [("downsample", "1"), ("jitter", "on"), ("threads", &cores().to_string())];
     let told = ["integrator", "size", "downsample", "spp", "shadow-rays", "jitter", "threads"].map(Knob::named);
-    let differs =
-        |knob: &&Knob| !matches!((knob.name, (knob.get)(&way).as_str()), ("downsample", "1") | ("jitter", "on"));
+    let differs = |knob: &&Knob| !usual.contains(&(knob.name, &(knob.get)(&way)));
     let words: Vec<String> = told.into_iter().filter(differs).map(|knob| knob.in_words(&(knob.get)(&way))).collect();
     let label = format!("{}: {}", row.title, words.join(", "));
     let named = Named { name: row.name.into(), label, group: row.group.into() };
