@@ -129,7 +129,7 @@ impl Folder {
     /// # Errors
     /// It cannot be written.
     pub fn save(&self, study: &Study) -> Result<(), Failure> {
-        let text = serde_json::to_string_pretty(study).map_err(Failure::bug)?;
+        let text = serde_json::to_string(study).map_err(Failure::bug)?;
         self.write(RECORD, (text + "\n").as_bytes())
     }
 
