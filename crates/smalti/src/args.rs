@@ -111,6 +111,7 @@ Examples:
   smalti render room.toml                            writes room.png here
   smalti render room.toml -o room.exr -o room.png    both, from one render
   smalti render room.toml --size 200x200 --spp 4     a quick look
+  smalti render room.toml --downsample 2 --spp 16    2x2 pixels for each one of the image, averaged
   smalti render room.toml --crop 120,80,64,64        these pixels as in the whole image, bit for bit
   smalti render room.toml --json --progress none     for a script
 

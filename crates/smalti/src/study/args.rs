@@ -122,6 +122,9 @@ pub struct EqualErrorArgs {
     /// The relative error of each render, about: 3% or 0.03; noise alone, a bias comes on top
     #[arg(long, value_name = "E", value_parser = parse_share, default_value = "3%", allow_hyphen_values = true)]
     pub error: f64,
+    /// No render takes longer than this, about; an arm that would has a larger error
+    #[arg(long, value_name = "S", value_parser = parse_seconds, default_value = "60", allow_hyphen_values = true)]
+    pub seconds: f64,
     #[command(flatten)]
     pub knobs: KnobLists,
 }

@@ -10,7 +10,7 @@ use super::pilot::Pilots;
 use super::plan::{Plan, interleaved};
 use super::progress::Progress;
 use super::question::Question;
-use super::reference::Truth;
+use super::reference::{self, Truth};
 use super::{measure, present};
 use crate::exit::Failure;
 use crate::job::Job;
@@ -97,8 +97,7 @@ impl Performance<'_> {
             self.progress.begin(&study.arms[arm].name, rest);
             let way = self.plan.arms[arm].way.clone();
             let rendered = self.bench.render(&way, seed(way.image.seed, repetition))?;
-            let truth = truths.iter().find(|truth| truth.record.size == study.arms[arm].size);
-            let truth = truth.ok_or_else(|| Failure::bug("an arm has no reference of its size"))?;
+            let truth = reference::of_size(truths, study.arms[arm].size)?;
             let run = measure::run((arm, repetition), &rendered, measure::distance(&rendered.developed.image, truth)?);
             if repetition == 0 {
                 self.keep_image(&mut study.arms[arm], &rendered, &run)?;

@@ -18,6 +18,8 @@ pub struct Pilot {
     pub round: f64,
     /// Square of the relative error of an image with one sample a pixel; `None`: nothing can be said.
     pub noise: Option<f64>,
+    /// Whether that is all of it: no bright light was met so seldom that there may be more.
+    pub certain: bool,
 }
 
 /// Pixels of a pilot, about.
@@ -37,6 +39,7 @@ impl Pilot {
             path: paths.max(0.0) / way.samples(),
             round: photons / rounds(way),
             noise: rendered.developed.error.map(|error| samples * error.relative_error * error.relative_error),
+            certain: rendered.developed.error.is_some_and(|error| error.relative_error_high.is_some()),
         }
     }
 
@@ -113,32 +116,18 @@ fn small(way: &Way) -> Way {
     small
 }
 
-/// The samples that make a render of `way` take `seconds`, by a pilot and by a trial in full size of a part of it.
-///
-/// # Errors
-/// What the bench answers.
-pub fn fit_time(way: &Way, pilot: Pilot, seconds: f64, bench: &mut Bench) -> Result<u32, Halt> {
-    let mut trial = way.clone();
-    trial.image.spp = pilot.samples_in(way, seconds * TRIAL);
-    let rendered = bench.render(&trial, SEED)?;
-    Ok(Pilot::of(&trial, &rendered).samples_in(way, seconds))
-}
-
 /// The samples that bring a squared error down by `ratio`, from `samples` that have it; by a factor of 16 at most, as
 /// one render says only so much.
 pub fn corrected(samples: u32, ratio: f64) -> u32 {
     (f64::from(samples) * ratio.clamp(1.0 / 16.0, 16.0)).round().clamp(1.0, MOST) as u32
 }
 
-/// A trial takes this part of the time that is aimed at.
-const TRIAL: f64 = 0.4;
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::study::combine::tests::base;
 
-    const PILOT: Pilot = Pilot { path: 1e-3, round: 0.5, noise: Some(0.64) };
+    const PILOT: Pilot = Pilot { path: 1e-3, round: 0.5, noise: Some(0.64), certain: true };
 
     fn way(spp: u32, downsample: u32) -> Way {
         let mut way = base();
@@ -163,7 +152,7 @@ mod tests {
         }
         // Two more rounds would begin with photons that there is no time for.
         assert_eq!(PILOT.samples_in(&way(1, 1), 2.4), 16);
-        let free = Pilot { path: 0.0, round: 0.0, noise: None };
+        let free = Pilot { path: 0.0, round: 0.0, noise: None, certain: false };
         assert_eq!(free.samples_in(&way(1, 1), 1.0), MOST as u32);
     }
 

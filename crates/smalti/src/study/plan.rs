@@ -41,8 +41,13 @@ pub enum Budget {
     Samples,
     /// So that a render takes so many seconds.
     Seconds(f64),
-    /// So that the relative error is this.
-    Error(f64),
+    /// So that the relative error is this, where a render need not take longer than so many seconds for it.
+    Error {
+        /// The relative error.
+        error: f64,
+        /// Seconds that no render takes longer than, about.
+        seconds: f64,
+    },
 }
 
 /// Repetitions where nothing else is said.

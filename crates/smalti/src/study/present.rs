@@ -3,6 +3,7 @@
 use smalti_report::{Arm, Reference, Study};
 
 use super::folder::Folder;
+use super::reference::FIFTH;
 use super::results::{self, ArmResult, Spread};
 use crate::exit::Failure;
 use crate::table::{Align, table};
@@ -48,7 +49,8 @@ fn references(study: &Study) -> String {
         let words = match (reference.relmse, best) {
             (None, _) => "nothing is known of its own error".into(),
             (Some(own), Some(best)) => {
-                format!("its own relmse, {own:.2e}, is taken off; {:.2} of the best arm's", own / best)
+                let more = if own > FIFTH * best { " (--reference-spp N for more)" } else { "" };
+                format!("its own relmse, {own:.2e}, is taken off; {:.2} of the best arm's{more}", own / best)
             }
             (Some(own), None) => format!("its own relmse, {own:.2e}, is taken off"),
         };

@@ -25,7 +25,10 @@ impl Preset {
             Preset::Sweep(args) => sweep(args, scene, world),
             Preset::Report(ReportArgs { size, .. }) => report::plan(scene, *size, world),
             Preset::EqualTime(args) => equal(self.name(), Budget::Seconds(args.seconds), &args.knobs, scene, world),
-            Preset::EqualError(args) => equal(self.name(), Budget::Error(args.error), &args.knobs, scene, world),
+            Preset::EqualError(args) => {
+                let budget = Budget::Error { error: args.error, seconds: args.seconds };
+                equal(self.name(), budget, &args.knobs, scene, world)
+            }
             Preset::Knobs(args) => knobs(args, scene, world),
         }
     }
@@ -119,7 +122,10 @@ mod tests {
         assert_eq!((found.arms.len(), found.budget), (4, Budget::Seconds(0.5)));
         let rays: Vec<_> = found.arms.iter().map(|arm| arm.way.image.shadow_rays).collect();
         assert_eq!(rays, [1, 4, 1, 4]);
-        assert_eq!(plan("smalti study equal-error a.toml --error 2%").unwrap().budget, Budget::Error(0.02));
+        assert_eq!(
+            plan("smalti study equal-error a.toml --error 2%").unwrap().budget,
+            Budget::Error { error: 0.02, seconds: 60.0 }
+        );
         assert!(plan("smalti study equal-time a.toml --spp 4").unwrap_err().message.contains("chooses"));
     }
 

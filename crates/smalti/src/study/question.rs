@@ -39,11 +39,13 @@ pub fn of(preset: &Preset, plan: &Plan, job: &Job, scene: &Way, tile: u32) -> Re
         ("reference", reference(common)?),
     ];
     question.extend(others.map(|(name, value)| (name.to_owned(), value)));
-    match plan.budget {
-        Budget::Samples => None,
-        Budget::Seconds(seconds) => question.insert("seconds".into(), value(&seconds)),
-        Budget::Error(error) => question.insert("error".into(), value(&error)),
+    let (error, seconds) = match plan.budget {
+        Budget::Samples => (None, None),
+        Budget::Seconds(seconds) => (None, Some(seconds)),
+        Budget::Error { error, seconds } => (Some(error), Some(seconds)),
     };
+    let budget = [("error", error), ("seconds", seconds)];
+    question.extend(budget.into_iter().filter_map(|(name, of)| Some((name.to_owned(), of?.to_string()))));
     Ok(question)
 }
 

@@ -24,6 +24,15 @@ pub struct Truth {
     pub image: Image,
 }
 
+/// The truth for images of a size.
+///
+/// # Errors
+/// There is none: a bug.
+pub fn of_size(truths: &[Truth], size: [u32; 2]) -> Result<&Truth, Failure> {
+    let found = truths.iter().find(|truth| truth.record.size == size);
+    found.ok_or_else(|| Failure::bug("an arm has no reference of its size"))
+}
+
 /// Sizes of which the first is a whole multiple of the others: they share a render.
 pub type Family = Vec<[u32; 2]>;
 

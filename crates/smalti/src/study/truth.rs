@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use smalti_report::{Reference, Study};
+use smalti_report::Study;
 
 use super::bench::{self, Halt};
 use super::perform::Performance;
@@ -47,7 +47,6 @@ impl Performance<'_> {
             self.progress.say(&what);
             self.progress.begin(&what, None);
             let made = reference::made(&way, family, &mut self.bench)?;
-            made.iter().zip(&best).for_each(|(truth, best)| self.judge(&truth.record, *best));
             truths.extend(made);
         }
         Ok(truths)
@@ -68,33 +67,20 @@ impl Performance<'_> {
         Ok(way)
     }
 
-    /// The least squared error that noise leaves any arm of a size; arms with a bias as well only where all have one.
+    /// The least squared error that noise leaves any arm of a size. Arms with a bias, and those whose noise is not known
+    /// for certain, are left out unless there are no others.
     fn best(&mut self, size: [u32; 2]) -> Result<Option<f64>, Halt> {
         let of_size = |way: &&Way| way.size() == size;
         let ways: Vec<Way> = self.plan.arms.iter().map(|arm| &arm.way).filter(of_size).cloned().collect();
-        let world = &self.bench.job.world;
-        let (fair, biased): (Vec<Way>, Vec<Way>) =
-            ways.into_iter().partition(|way| summary::biases(&way.image, world, 0).is_empty());
-        let mut best: Option<f64> = None;
-        for way in if fair.is_empty() { biased } else { fair } {
-            let error = self.pilot(&way)?.squared_error(&way);
-            best = best.into_iter().chain(error).reduce(f64::min);
+        let mut best: Option<(bool, f64)> = None;
+        for way in ways {
+            let pilot = self.pilot(&way)?;
+            let biases = summary::biases(&way.image, &self.bench.job.world, 0);
+            let doubtful = !biases.is_empty() || !pilot.certain;
+            let error = pilot.squared_error(&way).map(|error| (doubtful, error));
+            best = best.into_iter().chain(error).min_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
         }
-        Ok(best)
-    }
-
-    /// Says of a reference that is not as good as wanted.
-    fn judge(&self, record: &Reference, best: Option<f64>) {
-        let (Some(own), Some(best)) = (record.relative_error_squared, best) else { return };
-        if own > reference::FIFTH * best {
-            let [width, height] = record.size;
-            self.progress.say(&format!(
-                "the reference of {width}x{height} has a squared error of about {:.2} of the best arm's; errors are \
-                 freed of it, but {:.1} would be better: --reference-spp N takes more time for it",
-                own / best,
-                reference::FIFTH
-            ));
-        }
+        Ok(best.map(|(_, error)| error))
     }
 
     /// How long all renders will take, by pilots.
