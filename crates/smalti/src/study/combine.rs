@@ -1,6 +1,6 @@
 //! From knobs with values to ways to render: all combinations, or one knob at a time.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use smalti_core::scene::World;
 
@@ -12,6 +12,9 @@ use crate::exit::Failure;
 /// The knobs that make a difference to a way, by name, with their resolved values.
 pub type Turned = BTreeMap<String, String>;
 
+/// Arms of a study, at most: more are a slip.
+const MOST: usize = 10_000;
+
 /// What makes a way different from others.
 pub fn turned(way: &Way, world: &World) -> Turned {
     let applying = KNOBS.iter().filter(|knob| (knob.applies)(way, world));
@@ -22,8 +25,13 @@ pub fn turned(way: &Way, world: &World) -> Turned {
 /// to a way do not multiply it.
 ///
 /// # Errors
-/// A value that cannot be set.
+/// A value that cannot be set, or more than [`MOST`] combinations.
 pub fn combinations(base: &Way, lists: &KnobLists, world: &World) -> Result<Vec<Way>, Failure> {
+    let counts = KNOBS.iter().filter_map(|knob| lists.of(knob)).map(<[String]>::len);
+    let all = counts.fold(1, usize::saturating_mul);
+    if all > MOST {
+        return Err(Failure::user(format!("that are {all} combinations; a study has at most {MOST} arms")));
+    }
     let mut ways = vec![base.clone()];
     for knob in KNOBS {
         let Some(values) = lists.of(knob) else { continue };
@@ -65,14 +73,8 @@ pub fn one_at_a_time(
 
 /// The first of those that render the same.
 fn distinct(ways: Vec<Way>, world: &World) -> Vec<Way> {
-    let mut seen = Vec::new();
-    let is_new = |way: &Way| {
-        let turned = turned(way, world);
-        let new = !seen.contains(&turned);
-        seen.push(turned);
-        new
-    };
-    ways.into_iter().filter(is_new).collect()
+    let mut seen = BTreeSet::new();
+    ways.into_iter().filter(|way| seen.insert(turned(way, world))).collect()
 }
 
 #[cfg(test)]
@@ -116,6 +118,16 @@ pub mod tests {
     fn no_value_counts_twice() {
         let lists = KnobLists::new(&[("spp", &["4", "4", "8"])]);
         assert_eq!(combinations(&base(), &lists, &World::default()).unwrap().len(), 2);
+    }
+
+    #[test]
+    fn more_combinations_than_anyone_can_want_are_refused() {
+        let many: Vec<String> = (1..=101).map(|n| n.to_string()).collect();
+        let many: Vec<&str> = many.iter().map(String::as_str).collect();
+        let lists = |rays| KnobLists::new(&[("spp", &many[1..]), ("shadow-rays", rays)]);
+        assert_eq!(combinations(&base(), &lists(&many[1..]), &World::default()).unwrap().len(), MOST);
+        let message = combinations(&base(), &lists(&many), &World::default()).unwrap_err().message;
+        assert!(message.contains("10100 combinations"), "{message}");
     }
 
     #[test]
