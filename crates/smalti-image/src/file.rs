@@ -75,6 +75,12 @@ pub fn write(path: &Path, image: &Image, provenance: &Provenance, exposure_ev: f
         .map_err(|error| WriteError::Io { path: path.into(), error })
 }
 
+/// The bytes of a PNG file as [`write`] writes it, without provenance; `None` for an image without pixels or of a size that
+/// its pixels do not fill.
+pub fn encode_png(image: &Image, exposure_ev: f32) -> Option<Vec<u8>> {
+    encode(Format::Png, image, &Provenance::new(), exposure_ev).ok()
+}
+
 /// Reads the image at `path`, linear: a PNG is taken as sRGB.
 ///
 /// # Errors
@@ -167,6 +173,17 @@ pub(crate) mod tests {
             assert_eq!(read(&path).unwrap().width, 9);
         }
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), Format::ALL.len());
+    }
+
+    #[test]
+    fn a_png_in_memory_is_that_of_a_file() {
+        let image = sample(9, 4);
+        let decoded = decode(Format::Png, &encode_png(&image, 1.0).unwrap()).unwrap();
+        assert_eq!(
+            decoded,
+            decode(Format::Png, &encode(Format::Png, &image, &Provenance::new(), 1.0).unwrap()).unwrap()
+        );
+        assert_eq!(encode_png(&Image::black(0, 4), 0.0), None);
     }
 
     #[test]

@@ -17,7 +17,7 @@ mod tone;
 
 pub use destination::{DestinationError, check_destination, check_place, replace};
 pub use difference::{Difference, difference, difference_scale};
-pub use file::{ReadError, WriteError, read, write};
+pub use file::{ReadError, WriteError, encode_png, read, write};
 pub use format::{Format, FormatError};
 pub use hash::hash;
 pub use provenance::Provenance;

@@ -1,5 +1,7 @@
 //! What repetitions of one measurement say together: a middle, and how far it can be trusted.
 
+use serde::Serialize;
+
 use crate::timing::median;
 
 /// Repetitions from which an interval can be computed; with fewer there is only their range.
@@ -12,7 +14,7 @@ const STUDENT: [f64; 8] = [12.7062, 4.3027, 3.1824, 2.7764, 2.5706, 2.4469, 2.36
 const NORMAL: f64 = 1.959_964;
 
 /// Repetitions of a positive quantity (a time, an error, a ratio of two).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Repetitions {
     /// Their median.
     pub median: f64,
@@ -27,7 +29,8 @@ pub struct Repetitions {
 }
 
 /// What the ends of a range of repetitions are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Ends {
     /// The 95 % interval of the geometric mean, by Student's t on the logarithms.
     Interval,

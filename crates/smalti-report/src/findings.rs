@@ -1,5 +1,6 @@
 //! What a study found of each arm: its repetitions together, and whether anything is better.
 
+use serde::Serialize;
 use smalti_measure::{Repetitions, repetitions};
 
 use crate::front::front;
@@ -7,7 +8,7 @@ use crate::record::{Run, Study};
 use crate::stated::{Stated, stated};
 
 /// What was measured of one arm.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Finding {
     /// Index of the arm.
     pub arm: usize,

@@ -15,6 +15,7 @@ pub(crate) fn study() -> Study {
         scene: "room.toml".into(),
         scene_hash: "0123456789abcdef".into(),
         machine: Machine { cores: 2, simd: "avx2".into(), system: "linux x86_64".into() },
+        exposure: 0.0,
         references: vec![Reference {
             size: [80, 60],
             file: "reference.pfm".into(),

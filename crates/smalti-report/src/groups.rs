@@ -60,47 +60,33 @@ pub(crate) fn look(study: &Study, arm: usize) -> Look {
     groups(study).into_iter().find(|(name, _)| *name == group).map_or(Look { index: 0 }, |(_, look)| look)
 }
 
-/// Knobs along which a curve may go.
+/// Knobs along which a curve may go; the first in which arms of a group differ is taken.
 const ALONG: [&str; 3] = ["spp", "shadow-rays", "photons"];
 
-/// Findings that a line joins.
-struct Curve<'a> {
-    findings: Vec<&'a Finding>,
-    /// The knob in which its arms differ.
-    along: Option<&'a str>,
+/// Findings that a line joins, two at least: arms of a group that differ in one and the same knob only, in the order of its
+/// values.
+pub(crate) fn curves<'a>(study: &Study, findings: &'a [Finding]) -> Vec<Vec<&'a Finding>> {
+    let of_group = |group: &str| -> Vec<&'a Finding> {
+        findings.iter().filter(|finding| study.arms[finding.arm].group == group).collect()
+    };
+    groups(study).into_iter().flat_map(|(group, _)| curves_of(study, &of_group(group))).collect()
 }
 
-/// Arms that a curve joins, each with two findings at least: those of a group that differ in one and the same knob only, in
-/// the order of its values.
-pub(crate) fn curves<'a>(study: &'a Study, findings: &'a [Finding]) -> Vec<Vec<&'a Finding>> {
-    let mut curves: Vec<Curve> = Vec::new();
-    for finding in findings {
-        if !curves.iter_mut().any(|curve| curve.takes(study, finding)) {
-            curves.push(Curve { findings: vec![finding], along: None });
+fn curves_of<'a>(study: &Study, group: &[&'a Finding]) -> Vec<Vec<&'a Finding>> {
+    let joined = |a: &Finding, b: &Finding, knob: &str| differing(&study.arms[a.arm], &study.arms[b.arm]) == [knob];
+    let differ = |knob: &&str| group.iter().any(|a| group.iter().any(|b| joined(a, b, knob)));
+    let Some(along) = ALONG.into_iter().find(differ) else { return Vec::new() };
+    let mut curves: Vec<Vec<&Finding>> = Vec::new();
+    for finding in group {
+        match curves.iter_mut().find(|curve| joined(curve[0], finding, along)) {
+            Some(curve) => curve.push(finding),
+            None => curves.push(vec![finding]),
         }
     }
-    curves.into_iter().filter_map(|curve| curve.sorted(study)).collect()
-}
-
-impl<'a> Curve<'a> {
-    /// Takes a finding in if it belongs to the curve.
-    fn takes(&mut self, study: &'a Study, finding: &'a Finding) -> bool {
-        let [first, arm] = [self.findings[0], finding].map(|finding| &study.arms[finding.arm]);
-        let [knob] = differing(first, arm)[..] else { return false };
-        let belongs = first.group == arm.group && self.along.map_or(ALONG.contains(&knob), |along| along == knob);
-        if belongs {
-            self.along = Some(knob);
-            self.findings.push(finding);
-        }
-        belongs
-    }
-
-    fn sorted(mut self, study: &Study) -> Option<Vec<&'a Finding>> {
-        let along = self.along?;
-        let value = |finding: &&Finding| study.arms[finding.arm].knobs.get(along).and_then(|value| value.parse().ok());
-        self.findings.sort_by_key(|finding| value(finding).unwrap_or(0u64));
-        Some(self.findings)
-    }
+    let value = |finding: &&Finding| study.arms[finding.arm].knobs.get(along).and_then(|value| value.parse().ok());
+    curves.iter_mut().for_each(|curve| curve.sort_by_key(|finding| value(finding).unwrap_or(0u64)));
+    curves.retain(|curve| curve.len() > 1);
+    curves
 }
 
 #[cfg(test)]

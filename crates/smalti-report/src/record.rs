@@ -28,6 +28,9 @@ pub struct Study {
     pub scene_hash: String,
     /// Where it ran.
     pub machine: Machine,
+    /// Brightness of the pictures, stops.
+    #[serde(default)]
+    pub exposure: f64,
     /// What images were compared with; one for each size of image.
     pub references: Vec<Reference>,
     /// The ways to render.

@@ -1,11 +1,12 @@
 //! What renders stated of themselves, beside what was found.
 
+use serde::Serialize;
 use smalti_measure::median;
 
 use crate::record::Run;
 
 /// The statements of an arm's runs.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Stated {
     /// Median of the relative errors that were stated.
     pub relative_error: f64,

@@ -3,6 +3,7 @@
 //! The measure is error² × time: of unbiased renders it is the same at any number of samples, so that what lowers it is
 //! gained for nothing. Runs are compared in pairs of one repetition, which share their seed and the state of the machine.
 
+use serde::Serialize;
 use smalti_measure::{Ends, Repetitions, repetitions};
 
 use crate::findings::runs_of;
@@ -10,7 +11,7 @@ use crate::knobs::differing;
 use crate::record::{Arm, Run, Study};
 
 /// One arm against another.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Comparison {
     /// Index of the arm in question.
     pub arm: usize,
@@ -29,7 +30,8 @@ pub struct Comparison {
 }
 
 /// Whether a change is worth it.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     /// Error² × time is lower.
     Worth,

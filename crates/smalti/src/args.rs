@@ -50,6 +50,8 @@ pub enum Command {
     Photons(PhotonsArgs),
     /// Measure the trade between speed and accuracy: sweeps, equal time, equal error, the report
     Study(StudyArgs),
+    /// Show what a study found: a page, figures, the short version
+    Report(ReportArgs),
 }
 
 /// Arguments of `smalti render`.
@@ -86,6 +88,28 @@ pub struct RenderArgs {
 
 /// Pixels that become one in each direction, at most.
 pub const MOST_DOWNSAMPLE: i64 = 64;
+/// Arguments of `smalti report`.
+#[derive(Debug, Args)]
+#[command(after_help = REPORT_EXAMPLES)]
+pub struct ReportArgs {
+    /// Folder of a study, with its study.json
+    pub folder: PathBuf,
+    /// The page; figures lie beside it in the folder figures [default: report.html in the folder of the study]
+    #[arg(short, long = "output", value_name = "FILE.html")]
+    pub output: Option<PathBuf>,
+    /// Do not print the short version
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// Print what was found as one JSON object on stdout
+    #[arg(long)]
+    pub json: bool,
+}
+
+const REPORT_EXAMPLES: &str = "\
+Examples:
+  smalti report hexroom-study-sweep                  writes report.html and figures/*.svg there
+  smalti report hexroom-study-sweep -o ~/sweep.html  the page elsewhere; it needs no other file
+  smalti report hexroom-study-sweep --json -q        findings and verdicts for a script";
 
 /// How the machine is used, and what is told meanwhile.
 #[derive(Debug, Args)]

@@ -20,6 +20,7 @@ mod provenance;
 mod record;
 mod reproduce;
 mod study;
+mod study_report;
 mod summary;
 mod table;
 

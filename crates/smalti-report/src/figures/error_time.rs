@@ -51,7 +51,7 @@ pub(crate) fn error_time(study: &Study, findings: &[Finding], metric: &Metric, w
         (legend)
     };
     let label = format!("{} against render time of {}", metric.title, study.scene);
-    svg(width, chart.plot.height() + legend_height, &label, "chart", &content)
+    svg(width, chart.plot.height() + LINE + legend_height, &label, "chart", &content)
 }
 
 fn axis(findings: &[Finding], of: fn(&Finding) -> Repetitions, scale: f64) -> Axis {
@@ -178,7 +178,7 @@ fn legend(study: &Study, findings: &[Finding], width: f64, top: f64) -> (Markup,
         }
         (text(INDENT - 6.0, names, Anchor::Start, head))
         @for (index, member) in members.iter().enumerate() {
-            (text(INDENT - 6.0, names + LINE * (index + 1) as f64, Anchor::Start, &format!("{}  {member}", index + 1)))
+            (text(INDENT - 6.0, names + LINE * (index + 1) as f64, Anchor::Start, &format!("{}: {member}", index + 1)))
         }
     };
     (markup, names + LINE * members.len() as f64 + LINE - top)
@@ -210,7 +210,7 @@ mod tests {
     #[test]
     fn the_front_is_named_from_the_fastest_on() {
         let text = drawn(&fixture::sweep());
-        let names = ["1  path, path, 4 (biased)", "2  auto, auto, 4", "3  auto, auto, 16"];
+        let names = ["1: path, path, 4 (biased)", "2: auto, auto, 4", "3: auto, auto, 16"];
         let places: Vec<usize> = names.iter().map(|name| text.find(name).expect(name)).collect();
         assert!(places.is_sorted());
     }

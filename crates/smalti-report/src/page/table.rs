@@ -154,7 +154,7 @@ fn settings(arm: &Arm) -> Markup {
 fn cell(found: &Repetitions, words: fn(f64) -> String) -> Cell {
     let ends = match found.count {
         1 => "1 run".into(),
-        _ => format!("{} to {}", words(found.low), words(found.high)),
+        _ => format!("{} to {}", words(found.low).trim_end_matches(" %"), words(found.high)),
     };
     Cell { value: found.median, text: words(found.median), ends }
 }

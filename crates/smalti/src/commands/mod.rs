@@ -5,6 +5,7 @@ mod explain;
 mod photons;
 mod pixel;
 mod render;
+mod report;
 mod scaling;
 mod study;
 
@@ -27,6 +28,7 @@ pub fn run(cli: &Cli, start: Instant) -> ExitCode {
         Command::Pixel(args) => pixel::run(args),
         Command::Photons(args) => photons::run(args, cli.color, start),
         Command::Study(args) => study::run(args, cli.color),
+        Command::Report(args) => report::run(args, messages),
     };
     match ended {
         Ok(status) => status.into(),

@@ -5,6 +5,7 @@ mod mistakes;
 mod photon_map;
 mod photons;
 mod render;
+mod report;
 mod room;
 mod study;
 #[cfg(unix)]
