@@ -7,11 +7,11 @@ use crate::record::Study;
 /// How a group is drawn: by colour and, for those who do not see it, by shape and letter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Look {
-    /// Which of the colours and shapes; they repeat after [`LOOKS`] groups.
+    /// Number of the group.
     pub index: usize,
 }
 
-/// Looks that there are.
+/// Colours that there are, and shapes. Beyond so many groups each shape has another colour than before.
 pub(crate) const LOOKS: usize = 8;
 
 /// Colours on a light and on a dark ground, after Okabe and Ito: told apart by all kinds of eyes.
@@ -29,17 +29,26 @@ pub(crate) const COLOURS: [[&str; 2]; LOOKS] = [
 impl Look {
     /// Its colour on a light ground.
     pub fn colour(self) -> &'static str {
-        COLOURS[self.index][0]
+        COLOURS[self.tone()][0]
     }
 
     /// The class by which a page gives it the colour of its scheme.
     pub fn class(self) -> String {
-        format!("look-{}", self.index)
+        format!("look-{}", self.tone())
+    }
+
+    /// Which of the shapes.
+    pub fn shape(self) -> usize {
+        self.index % LOOKS
     }
 
     /// A letter for the terminal.
     pub fn letter(self) -> char {
-        char::from(b'a' + self.index as u8)
+        char::from(b'a' + (self.index % 26) as u8)
+    }
+
+    fn tone(self) -> usize {
+        (self.index + self.index / LOOKS) % LOOKS
     }
 }
 
@@ -51,7 +60,7 @@ pub(crate) fn groups(study: &Study) -> Vec<(&str, Look)> {
             names.push(&arm.group);
         }
     }
-    names.into_iter().enumerate().map(|(index, name)| (name, Look { index: index % LOOKS })).collect()
+    names.into_iter().enumerate().map(|(index, name)| (name, Look { index })).collect()
 }
 
 /// The look of an arm's group.
@@ -91,6 +100,8 @@ fn curves_of<'a>(study: &Study, group: &[&'a Finding]) -> Vec<Vec<&'a Finding>> 
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use super::*;
     use crate::findings::findings;
     use crate::fixture;
@@ -101,6 +112,13 @@ mod tests {
         let names: Vec<&str> = groups(&study).iter().map(|(name, _)| *name).collect();
         assert_eq!(names, ["path", "auto"]);
         assert_eq!((look(&study, 2).letter(), look(&study, 3).letter()), ('a', 'b'));
+    }
+
+    #[test]
+    fn many_groups_differ_in_colour_or_shape() {
+        let looks: BTreeSet<_> =
+            (0..LOOKS * LOOKS).map(|index| (Look { index }.class(), Look { index }.shape())).collect();
+        assert_eq!(looks.len(), LOOKS * LOOKS);
     }
 
     #[test]

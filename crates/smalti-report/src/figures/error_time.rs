@@ -116,11 +116,18 @@ impl Chart<'_> {
                 circle cx=(round(middle[0])) cy=(round(middle[1])) r="13" fill="#ffffff" fill-opacity="0" {}
                 (self.intervals(finding, look))
                 (marker(look, middle, !arm.biases.is_empty()))
-                @if let Some(number) = number {
-                    (text(middle[0] - 8.0, middle[1] + 17.0, Anchor::End, &number.to_string()))
-                }
+                @if let Some(number) = number { (self.number(number, middle)) }
             }
         }
+    }
+
+    /// Below the marker, where nothing is; above it where the number of the member before stands there.
+    fn number(&self, number: usize, [x, y]: [f64; 2]) -> Markup {
+        const NEAR: f64 = 22.0;
+        let before = number.checked_sub(2).map(|index| self.middle(front_by_time(self.findings)[index]));
+        let crowded = before.is_some_and(|[u, v]| (x - u).abs() < NEAR && (y - v).abs() < NEAR);
+        let ([right, down], anchor) = if crowded { ([8.0, -9.0], Anchor::Start) } else { ([-8.0, 17.0], Anchor::End) };
+        text(x + right, y + down, anchor, &number.to_string())
     }
 
     /// A line in each direction, from end to end.

@@ -23,7 +23,7 @@ pub(crate) fn marker(look: Look, [x, y]: [f64; 2], hollow: bool) -> Markup {
     let fill = if hollow { "#ffffff" } else { colour };
     let kind = if hollow { "hollow" } else { "solid" };
     html! {
-        path class={ "marker " (kind) " " (look.class()) } d=(SHAPES[look.index])
+        path class={ "marker " (kind) " " (look.class()) } d=(SHAPES[look.shape()])
             transform={ "translate(" (round(x)) " " (round(y)) ")" } fill=(fill) stroke=(colour) stroke-width="1.6" {}
     }
 }
