@@ -75,7 +75,7 @@ pub fn write(path: &Path, image: &Image, provenance: &Provenance, exposure_ev: f
         .map_err(|error| WriteError::Io { path: path.into(), error })
 }
 
-/// The bytes of a PNG file as [`write`] writes it, without provenance; `None` for an image without pixels or of a size that
+/// The bytes of a PNG file as [`write()`] writes it, without provenance; `None` for an image without pixels or of a size that
 /// its pixels do not fill.
 pub fn encode_png(image: &Image, exposure_ev: f32) -> Option<Vec<u8>> {
     encode(Format::Png, image, &Provenance::new(), exposure_ev).ok()

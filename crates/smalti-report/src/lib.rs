@@ -23,6 +23,6 @@ pub use knobs::sentence;
 pub use page::{ArmPictures, Pictures, page};
 pub use record::{Arm, FORMAT, Machine, Reference, Run, Study, TileTime};
 pub use stated::Stated;
-pub use table_one::{TABLE_ONE, TableOneRow, table_one_markdown};
+pub use table_one::table_one_markdown;
 pub use verdict::{Comparison, Verdict, comparisons};
 pub use words::words;

@@ -6,7 +6,7 @@ use crate::record::{Arm, Study};
 
 /// A row of Table 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TableOneRow {
+pub(crate) struct TableOneRow {
     /// Name of the image.
     pub image: &'static str,
     /// Width and height of the square image.
@@ -22,7 +22,7 @@ pub struct TableOneRow {
 }
 
 /// Table 1.
-pub const TABLE_ONE: [TableOneRow; 6] = [
+const TABLE_ONE: [TableOneRow; 6] = [
     row("Comparison image", 800, 5, 10, true, 115.46),
     row("Figure 1", 400, 5, 10, true, 29.15),
     row("Figure 2", 800, 1, 10, true, 23.64),
@@ -76,10 +76,12 @@ pub(crate) const HEADINGS: [&str; 8] = [
 /// A row as text.
 pub(crate) fn cells(ours: &Ours) -> [String; 8] {
     let row = &ours.row;
-    let side = ours.measured.map_or(row.side, |(arm, _)| arm.size[0]);
-    let resolution = match side == row.side {
-        true => format!("{side} × {side}"),
-        false => format!("{0} × {0} (ours {side} × {side})", row.side),
+    let theirs = [row.side; 2];
+    let ours_size = ours.measured.map_or(theirs, |(arm, _)| arm.size);
+    let in_words = |[width, height]: [u32; 2]| format!("{width} × {height}");
+    let resolution = match ours_size == theirs {
+        true => in_words(theirs),
+        false => format!("{} (ours {})", in_words(theirs), in_words(ours_size)),
     };
     let measured = |of: fn(&Finding) -> String| ours.measured.map_or("-".into(), |(_, finding)| of(finding));
     [

@@ -2,17 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use console::Term;
 use serde::Serialize;
-use smalti_report::{Comparison, Finding, Study, comparisons, findings, sentence, words};
+use smalti_report::{Comparison, Finding, Study, comparisons, findings, sentence};
 
 use crate::args::ReportArgs;
 use crate::exit::{Failure, Status};
 use crate::print::{self, Messages};
 use crate::study_report::{self, Written};
-
-/// Columns of the short version where no terminal says otherwise, and at most.
-const WIDTH: usize = 100;
 
 #[derive(Serialize)]
 struct Report<'a> {
@@ -51,19 +47,10 @@ pub fn run(args: &ReportArgs, messages: Messages) -> Result<Status, Failure> {
     written.missing.iter().for_each(|what| messages.warning(what));
     match (args.json, args.quiet) {
         (true, _) => print_json(&study, &args.folder, &written)?,
-        (false, false) => print::result(&text(&study, &written))?,
+        (false, false) => print::result(&written.describe(&study))?,
         (false, true) => {}
     }
     Ok(Status::Done)
-}
-
-fn text(study: &Study, written: &Written) -> String {
-    let columns = Term::stdout().size_checked().map_or(WIDTH, |(_, columns)| usize::from(columns));
-    let figures = match written.figures.first().and_then(|figure| figure.parent()) {
-        Some(folder) => format!(", figures in {}", folder.display()),
-        None => String::new(),
-    };
-    format!("{}\n{}{figures}\n", words(study, columns.min(WIDTH)), written.page.display())
 }
 
 fn print_json(study: &Study, folder: &Path, written: &Written) -> Result<(), Failure> {

@@ -51,10 +51,28 @@ fn a_study_becomes_a_page_figures_and_a_table() {
     let page = fs::read_to_string(folder.path().join("study/report.html")).unwrap();
     // Nine arms and the reference, nine differences.
     assert_eq!(page.matches("src=\"data:image/png").count(), 19);
+    assert!(!folder.path().join("study/figures/table-1.md").exists());
     for figure in ["error-time", "relmse-time", "knobs", "tiles-0-path-4spp-1"] {
         let text = fs::read_to_string(folder.path().join(format!("study/figures/{figure}.svg"))).unwrap();
         assert!(text.starts_with("<svg xmlns=") && text.ends_with("</svg>"), "{figure}");
     }
+}
+
+#[test]
+fn the_reports_table_is_written_beside_ours() {
+    let folder = folder();
+    let path = folder.path().join("study/study.json");
+    // Four samples and one shadow ray become the settings of the report's comparison image.
+    let text = fs::read_to_string(&path).unwrap().replacen(
+        r#""spp":"4","shadow-rays":"1""#,
+        r#""spp":"5","shadow-rays":"10""#,
+        1,
+    );
+    fs::write(&path, text.replacen(r#""preset":"knobs""#, r#""preset":"report""#, 1)).unwrap();
+    assert_eq!(run(&folder, "report study -q").status.code(), Some(0));
+    let table = fs::read_to_string(folder.path().join("study/figures/table-1.md")).unwrap();
+    assert!(table.contains("| Comparison image | 800 × 800 (ours 48 × 36) | 5 | 10 | yes | 115.46 | 0.0"), "{table}");
+    assert!(fs::read_to_string(folder.path().join("study/report.html")).unwrap().contains("Table 1, then and now"));
 }
 
 #[test]
