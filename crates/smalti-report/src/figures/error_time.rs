@@ -3,13 +3,14 @@
 use maud::{Markup, html};
 use smalti_measure::Repetitions;
 
-use super::ink::{Anchor, LINE, points, round, svg, text, text_width};
+use super::ink::{Anchor, LINE, points, round, svg, text};
+use super::legend::legend;
 use super::marker::marker;
 use super::plot::Plot;
 use crate::axis::Axis;
 use crate::findings::{Finding, front_by_time};
 use crate::front::front;
-use crate::groups::{Look, curves, groups, look};
+use crate::groups::{Look, curves, look};
 use crate::numbers::{percent, seconds, significant};
 use crate::record::Study;
 
@@ -75,10 +76,9 @@ impl Chart<'_> {
         self.place(finding.seconds.median, (self.metric.of)(finding).median)
     }
 
-    /// The steps below which nothing was found, of the most common size of image where there are several.
+    /// The steps below which nothing was found.
     fn front_line(&self) -> Markup {
-        let size = self.study.baseline.unwrap_or(0);
-        let same = |finding: &&Finding| self.study.arms[finding.arm].size == self.study.arms[size].size;
+        let same = |finding: &&Finding| self.study.arms[finding.arm].size == front_size(self.study);
         let places: Vec<[f64; 2]> = self.findings.iter().filter(same).map(|finding| self.middle(finding)).collect();
         // On the screen more error is up, and up is a smaller number.
         let on_front = front(&places.iter().map(|[x, y]| [*x, -*y]).collect::<Vec<_>>());
@@ -153,6 +153,11 @@ impl Chart<'_> {
     }
 }
 
+/// The size of image whose front is drawn: that of the baseline, or of the first arm.
+pub(crate) fn front_size(study: &Study) -> [u32; 2] {
+    study.arms.get(study.baseline.unwrap_or(0)).map_or([0, 0], |arm| arm.size)
+}
+
 fn plain_title(metric: &Metric) -> &'static str {
     metric.title.split(',').next().unwrap_or_default()
 }
@@ -160,40 +165,6 @@ fn plain_title(metric: &Metric) -> &'static str {
 /// The number that a member of the front has in figures: 1 for the fastest.
 pub(crate) fn front_number(findings: &[Finding], finding: &Finding) -> Option<usize> {
     front_by_time(findings).iter().position(|member| member.arm == finding.arm).map(|index| index + 1)
-}
-
-/// The groups with their markers, then the front's members by number; and its height.
-fn legend(study: &Study, findings: &[Finding], width: f64, top: f64) -> (Markup, f64) {
-    const INDENT: f64 = 22.0;
-    let (mut x, mut y) = (INDENT, top);
-    let mut entries = Vec::new();
-    for (name, look) in groups(study) {
-        let needed = INDENT + text_width(name) + 14.0;
-        if x > INDENT && x + needed > width {
-            (x, y) = (INDENT, y + LINE);
-        }
-        entries.push((look, name, [x, y]));
-        x += needed;
-    }
-    let members: Vec<String> = front_by_time(findings).iter().map(|finding| front_words(study, finding)).collect();
-    let head = "On the Pareto front, the fastest first:";
-    let names = y + 1.4 * LINE;
-    let markup = html! {
-        @for (look, name, [x, y]) in entries {
-            (marker(look, [x, y - 4.0], false))
-            (text(x + 12.0, y, Anchor::Start, name))
-        }
-        (text(INDENT - 6.0, names, Anchor::Start, head))
-        @for (index, member) in members.iter().enumerate() {
-            (text(INDENT - 6.0, names + LINE * (index + 1) as f64, Anchor::Start, &format!("{}: {member}", index + 1)))
-        }
-    };
-    (markup, names + LINE * members.len() as f64 + LINE - top)
-}
-
-fn front_words(study: &Study, finding: &Finding) -> String {
-    let biased = if study.arms[finding.arm].biases.is_empty() { "" } else { " (biased)" };
-    format!("{}{biased}", study.arms[finding.arm].label)
 }
 
 #[cfg(test)]
@@ -212,14 +183,6 @@ mod tests {
         assert_eq!(drawn(&study).matches("data-arm").count(), 5);
         study.runs.truncate(3);
         assert_eq!(drawn(&study).matches("data-arm").count(), 3);
-    }
-
-    #[test]
-    fn the_front_is_named_from_the_fastest_on() {
-        let text = drawn(&fixture::sweep());
-        let names = ["1: path, path, 4 (biased)", "2: auto, auto, 4", "3: auto, auto, 16"];
-        let places: Vec<usize> = names.iter().map(|name| text.find(name).expect(name)).collect();
-        assert!(places.is_sorted());
     }
 
     #[test]

@@ -3,12 +3,12 @@
 mod error_time;
 mod ink;
 mod knobs;
+mod legend;
 mod marker;
 mod plot;
 mod tiles;
 
-pub(crate) use error_time::front_number;
-pub(crate) use error_time::{ERROR, Metric, RELMSE, error_time};
+pub(crate) use error_time::{ERROR, Metric, RELMSE, error_time, front_number, front_size};
 pub(crate) use knobs::knob_costs;
 pub(crate) use marker::marker;
 pub(crate) use tiles::{balance, heat, milliseconds, tile_map, tiles_of};

@@ -40,7 +40,7 @@ fn the_scheme_is_that_of_the_reader() {
 #[test]
 fn paper_has_no_controls() {
     let Some(browser) = opened() else { return };
-    let controls = "select, input, .stage, .gallery, a.button";
+    let controls = "select, input, .gallery, a.button";
     assert!(browser.visible(controls) > 0.0);
     media(&browser, "print", "light");
     assert_eq!(
