@@ -84,9 +84,16 @@ pub(crate) fn cost(comparison: &Comparison) -> Option<String> {
     Some(format!("{}× ({} to {})", significant(cost.median, 3), significant(cost.low, 3), significant(cost.high, 3)))
 }
 
-/// The whole sentence: `20 shadow rays instead of 10: 1.7× the time, 0.90× the error; not worth it here`.
+/// Of which arm it is said, where that is not the baseline with one knob turned.
+pub(crate) fn within<'a>(study: &'a Study, comparison: &Comparison) -> Option<&'a str> {
+    (study.baseline != Some(comparison.other)).then(|| study.arms[comparison.arm].label.as_str())
+}
+
+/// The whole sentence: `20 shadow rays instead of 10: 1.7× the time, 0.90× the error; not worth it here`, with the arm behind
+/// it where it is not compared with the baseline.
 pub fn sentence(study: &Study, comparison: &Comparison) -> String {
-    format!("{}: {}; {}", headline(study, comparison), price(comparison), judgement(comparison))
+    let within = within(study, comparison).map(|label| format!(" ({label})")).unwrap_or_default();
+    format!("{}: {}; {}{within}", headline(study, comparison), price(comparison), judgement(comparison))
 }
 
 #[cfg(test)]

@@ -50,13 +50,18 @@ pub enum Verdict {
 }
 
 /// Each arm that differs from the baseline in one knob against it; without a baseline, each arm against the best of those
-/// that differ from it in one knob.
+/// that differ from it in one knob. The baseline says nothing of arms of another size that differ in more: they too are
+/// compared with the best, of their own size.
 pub fn comparisons(study: &Study) -> Vec<Comparison> {
-    let arms = 0..study.arms.len();
-    match study.baseline {
-        Some(baseline) => arms.filter_map(|arm| against(study, arm, baseline)).collect(),
-        None => arms.filter_map(|arm| against_best(study, arm)).collect(),
-    }
+    (0..study.arms.len()).filter_map(|arm| comparison(study, arm)).collect()
+}
+
+fn comparison(study: &Study, arm: usize) -> Option<Comparison> {
+    let all = 0..study.arms.len();
+    let Some(baseline) = study.baseline else { return against_best(study, arm, all) };
+    let size = |arm: usize| study.arms[arm].size;
+    let of_its_size = || against_best(study, arm, all.filter(|&other| size(other) == size(arm)));
+    against(study, arm, baseline).or_else(|| (size(arm) != size(baseline)).then(of_its_size).flatten())
 }
 
 fn against(study: &Study, arm: usize, baseline: usize) -> Option<Comparison> {
@@ -66,11 +71,10 @@ fn against(study: &Study, arm: usize, baseline: usize) -> Option<Comparison> {
     }
 }
 
-fn against_best(study: &Study, arm: usize) -> Option<Comparison> {
-    let neighbour = |other: usize| against(study, arm, other);
+fn against_best(study: &Study, arm: usize, others: impl Iterator<Item = usize>) -> Option<Comparison> {
     let cost = |comparison: &Comparison| comparison.cost.map_or(f64::NEG_INFINITY, |cost| cost.median);
     // The best neighbour is the one by which the arm's cost is highest.
-    (0..study.arms.len()).filter_map(neighbour).max_by(|a, b| cost(a).total_cmp(&cost(b)))
+    others.filter_map(|other| against(study, arm, other)).max_by(|a, b| cost(a).total_cmp(&cost(b)))
 }
 
 /// Compares two arms that differ in `knob`; `None` without a repetition that both have.
@@ -194,5 +198,22 @@ mod tests {
     fn with_a_baseline_only_single_knobs_are_compared() {
         let arms: Vec<usize> = comparisons(&fixture::sweep()).iter().map(|found| found.arm).collect();
         assert_eq!(arms, [1, 2, 3]);
+    }
+
+    #[test]
+    fn arms_of_another_size_are_compared_among_themselves() {
+        let mut study = study([[1.0; 3], [2.0; 3]], [[0.1; 3], [0.01; 3]]);
+        for (knobs, seconds) in
+            [([("shadow-rays", "5"), ("size", "8x8")], 0.5), ([("shadow-rays", "1"), ("size", "8x8")], 0.2)]
+        {
+            study.runs.extend((0..3).map(|repetition| fixture::run(study.arms.len(), repetition, seconds, 0.1)));
+            study.arms.push(Arm { size: [8, 8], ..fixture::arm("path", &knobs) });
+        }
+        study.arms[0].knobs.insert("size".into(), "80x60".into());
+        study.arms[1].knobs.insert("size".into(), "80x60".into());
+        let found = comparisons(&study);
+        let pairs: Vec<(usize, usize)> = found.iter().map(|found| (found.arm, found.other)).collect();
+        assert_eq!(pairs, [(1, 0), (2, 3), (3, 2)]);
+        assert_eq!((&found[1].verdict, &found[2].verdict), (&Verdict::NotWorth, &Verdict::Worth));
     }
 }

@@ -2,6 +2,7 @@
 
 use maud::{Markup, html};
 
+use super::command::command;
 use crate::findings::{Finding, by_efficiency};
 use crate::numbers::{counted, percent, seconds};
 use crate::record::{Reference, Study};
@@ -22,7 +23,7 @@ pub(super) fn head(study: &Study, findings: &[Finding]) -> Markup {
                 dt { "Scene" }
                 dd { (study.scene) ", " span.hash { (study.scene_hash) } }
                 dt { "Again" }
-                dd { code.command { (study.command) } }
+                dd { (command(&study.command)) }
             }
         }
     }
@@ -43,8 +44,9 @@ pub(crate) fn question(preset: &str) -> &str {
 fn measured(study: &Study) -> String {
     let (arms, runs) = (study.arms.len(), study.runs.len());
     let repetitions = study.runs.iter().map(|run| run.repetition + 1).max().unwrap_or(0) as usize;
+    let most = if runs == arms * repetitions { "" } else { "up to " };
     let (arms, runs) = (counted(arms, "way"), counted(runs, "render"));
-    format!("{arms} to render, {} in turn, {runs} in all", counted(repetitions, "repetition"))
+    format!("{arms} to render, {most}{} in turn, {runs} in all", counted(repetitions, "repetition"))
 }
 
 /// The best by time, by accuracy and by both.
@@ -85,7 +87,7 @@ fn truth(reference: &Reference) -> Markup {
             None => { "nothing is known of its own error, and nothing is taken off" }
         }
         @match &reference.command {
-            Some(command) => { "; " code.command { (command) } }
+            Some(text) => { "; " (command(text)) }
             None => { "; it was given" }
         }
     }
@@ -110,10 +112,18 @@ mod tests {
     }
 
     #[test]
+    fn what_was_measured_is_counted() {
+        let mut study = fixture::sweep();
+        assert_eq!(measured(&study), "5 ways to render, 3 repetitions in turn, 15 renders in all");
+        study.runs.pop();
+        assert_eq!(measured(&study), "5 ways to render, up to 3 repetitions in turn, 14 renders in all");
+    }
+
+    #[test]
     fn references_say_what_is_known_of_them() {
         let mut reference = fixture::study().references.remove(0);
         let text = truth(&reference).into_string();
-        assert!(text.contains("its own relative error is 1.00 %") && text.contains("--spp 4096"), "{text}");
+        assert!(text.contains("its own relative error is 1.00 %") && text.contains("<span>4096</span>"), "{text}");
         (reference.relative_error_squared, reference.command) = (None, None);
         let text = truth(&reference).into_string();
         assert!(text.contains("nothing is known") && text.contains("it was given"), "{text}");

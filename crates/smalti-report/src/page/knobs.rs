@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use crate::figures::{NARROW, WIDE, knob_costs};
-use crate::knobs::{cost, headline, judgement, price};
+use crate::knobs::{cost, headline, judgement, price, within};
 use crate::record::Study;
 use crate::verdict::{Comparison, Verdict};
 
@@ -31,19 +31,18 @@ pub(super) fn section(study: &Study, comparisons: &[Comparison]) -> Markup {
 /// What arms are compared with.
 fn against(study: &Study) -> String {
     match study.baseline.and_then(|arm| study.arms.get(arm)) {
-        Some(arm) => format!("Each against {}.", arm.label),
+        Some(arm) => format!("Each against {}, unless another arm is named.", arm.label),
         None => "Each arm against the best of those that differ from it in one knob.".into(),
     }
 }
 
 fn item(study: &Study, comparison: &Comparison) -> Markup {
-    let arm = &study.arms[comparison.arm];
     html! {
         li class=(class(&comparison.verdict)) {
             strong { (headline(study, comparison)) } ": " (price(comparison)) "; "
             em { (judgement(comparison)) }
             @if let Some(cost) = cost(comparison) { small { "error² × time " (cost) } }
-            @if study.baseline.is_none() { small { "in " (arm.label) } }
+            @if let Some(label) = within(study, comparison) { small { "of " (label) } }
         }
     }
 }
@@ -69,6 +68,6 @@ mod tests {
         let text = section(&study, &comparisons(&study)).into_string();
         assert_eq!(text.matches("<li class").count(), 3);
         assert!(text.contains("<li class=\"better\"><strong>auto instead of path</strong>: 2.0× the time"), "{text}");
-        assert!(text.contains("Each against path, path, 4."));
+        assert!(text.contains("Each against path, path, 4, unless"));
     }
 }

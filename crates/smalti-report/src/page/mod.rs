@@ -1,6 +1,7 @@
 //! The page: one HTML file with all that it shows, which asks nobody for anything.
 
 mod chart;
+mod command;
 mod compare;
 mod data;
 mod head;

@@ -3,6 +3,7 @@
 use maud::{Markup, html};
 use smalti_measure::Repetitions;
 
+use super::command::command;
 use crate::figures::{front_number, marker};
 use crate::findings::Finding;
 use crate::groups::look;
@@ -145,7 +146,7 @@ fn settings(arm: &Arm) -> Markup {
             div.about {
                 @for bias in &arm.biases { p.bias { "Biased: " (bias) } }
                 ul.knobs { @for (name, value) in &arm.knobs { li { (name) " " b { (value) } } } }
-                code.command { (arm.command) }
+                (command(&arm.command))
             }
         }
     }

@@ -103,14 +103,8 @@ fn biased_note(study: &Study, findings: &[Finding]) -> String {
 }
 
 fn verdicts(study: &Study, width: usize) -> String {
-    let lines = comparisons(study).into_iter().map(|comparison| {
-        let within = match study.baseline {
-            Some(_) => String::new(),
-            None => format!(" ({})", study.arms[comparison.arm].label),
-        };
-        wrap(&format!("  {}{within}", sentence(study, &comparison)), width, "      ")
-    });
-    lines.collect()
+    let line = |comparison| wrap(&format!("  {}", sentence(study, &comparison)), width, "      ");
+    comparisons(study).into_iter().map(line).collect()
 }
 
 #[cfg(test)]
