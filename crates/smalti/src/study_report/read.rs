@@ -43,6 +43,9 @@ fn parse(text: &str) -> Result<Study, String> {
     }
     // From the text again, for the place of what is wrong.
     let study: Study = serde_json::from_str(text).map_err(|error| format!("is damaged: {error}"))?;
+    if study.arms.is_empty() {
+        return Err("this study was stopped before it knew what to render; start it again".into());
+    }
     check(&study).map_err(|what| format!("is damaged: {what}"))?;
     Ok(study)
 }
@@ -92,6 +95,8 @@ mod tests {
         assert_eq!(wrong("\"baseline\":null", "\"baseline\":1"), "is damaged: the baseline is arm 1 of 1");
         assert!(wrong("\"scene\":\"s\",", "").contains("missing field `scene`"));
         assert!(wrong("]}", "").contains("is damaged: EOF"));
+        let (before, _) = STUDY.split_once("\"arms\"").unwrap();
+        assert!(parse(&format!("{before}\"arms\":[]}}")).unwrap_err().contains("start it again"));
     }
 
     #[test]
