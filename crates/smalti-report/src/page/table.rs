@@ -50,7 +50,7 @@ const AGAINST: [Column; 3] = [
     },
 ];
 
-const STATED: Column = Column { title: "stated of itself", cell: stated };
+const STATED: Column = Column { title: "stated", cell: stated };
 
 pub(super) fn section(study: &Study, findings: &[Finding]) -> Markup {
     if findings.is_empty() {
@@ -72,7 +72,7 @@ pub(super) fn section(study: &Study, findings: &[Finding]) -> Markup {
             p.note {
                 "Medians over repetitions, with the 95 % interval of the mean below (with fewer than three repetitions their range). "
                 "Efficiency is 1 / (relmse × seconds). A number in a circle: on the Pareto front, 1 the fastest. "
-                "Stated of itself: the relative error that the renders stated without the reference, and in how many of them the "
+                "Stated: the relative error that the renders stated without the reference, and in how many of them the "
                 "stated 95 % interval holds the error that was found."
             }
         }
