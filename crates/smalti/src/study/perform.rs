@@ -80,6 +80,7 @@ impl Performance<'_> {
             arms: Vec::new(),
             baseline: self.plan.baseline,
             runs: Vec::new(),
+            exposure: f64::from(job.exposure(None)),
         };
         self.folder.make()?;
         self.folder.save(&study)?;

@@ -111,6 +111,7 @@ pub mod tests {
             references: Vec::new(),
             arms: vec![arm("path"), arm("auto")],
             baseline: Some(0),
+            exposure: 0.0,
             runs: [1.0, 3.0, 1.2]
                 .iter()
                 .zip(0..)

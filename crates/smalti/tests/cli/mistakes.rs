@@ -8,8 +8,9 @@ use crate::room::{SCENE, folder, refuses, run, stderr, stdout};
 fn help_shows_examples_and_exit_codes() {
     let folder = folder();
     let help = stdout(&run(&folder, "--help"));
-    for part in ["render", "explain", "scaling", "compare", "pixel", "photons", "study", "Examples:", "Exit codes:"] {
-    for part in ["render", "explain", "scaling", "compare", "pixel", "photons", "report", "Examples:", "Exit codes:"] {
+    for part in
+        ["render", "explain", "scaling", "compare", "pixel", "photons", "study", "report", "Examples:", "Exit codes:"]
+    {
         assert!(help.contains(part), "{part}");
     }
     for part in ["--shadow-rays", "--crop", "Ctrl-C", "[possible values: auto, path, photon, whitted]"] {
