@@ -37,6 +37,8 @@ pub struct Settings {
     pub fresnel: Fresnel,
     /// Whether a sample's place in its pixel is random (the report's 'ray noise'); else the pixel's centre.
     pub jitter: bool,
+    /// Whether tiles take more or fewer samples than [`Settings::spp`], as their noise asks for, and that is the mean.
+    pub adaptive: bool,
     /// Index into the world's cameras.
     pub camera: usize,
     /// Photons that are emitted for each round of samples and each map, at most [`MOST_PHOTONS`]; 0: none, and light
@@ -60,6 +62,7 @@ impl Default for Settings {
             seed: 0,
             fresnel: Fresnel::Exact,
             jitter: true,
+            adaptive: false,
             camera: 0,
             photons: None,
             radius: None,

@@ -12,5 +12,5 @@ mod timing;
 pub use bias::{BiasStatement, bias_statement};
 pub use compare::{CompareError, Comparison, PixelDifference, compare};
 pub use repetitions::{Ends, REPETITIONS_FOR_INTERVAL, Repetitions, repetitions};
-pub use statement::{ErrorStatement, error_statement};
+pub use statement::{ErrorStatement, error_statement, noise};
 pub use timing::{efficiency, median, parallel_efficiency, quantile, speed_up};

@@ -69,6 +69,11 @@ impl Sums {
         }
     }
 
+    /// What x itself says of the error: less than there is where noise is skewed, but never much more.
+    pub fn plain(&self) -> f64 {
+        self.plain
+    }
+
     /// The mean over `count` pixels and channels, from `batches` batches. `None` if it is not finite.
     pub fn relative(&self, count: f64, batches: usize) -> Option<Relative> {
         if self.plain == 0.0 {

@@ -37,8 +37,7 @@ pub struct ErrorStatement {
 pub fn error_statement(film: &Film) -> Option<ErrorStatement> {
     let count = (3 * film.area.pixels()) as f64;
     let batches = film.tiles.iter().map(|tile| tile.counts.batches()).min().filter(|batches| *batches >= 2)?;
-    let brightness: Vec<f64> = film.tiles.par_iter().map(brightness).collect();
-    let mean = brightness.iter().sum::<f64>() / count;
+    let mean = mean(film);
     let floors = [FLOOR, FLOOR * mean * mean];
     let of_tiles: Vec<[Sums; 2]> = film.tiles.par_iter().map(|tile| sums(tile, floors)).collect();
     let all = of_tiles.into_iter().reduce(|a, b| [a[0].and(b[0]), a[1].and(b[1])])?;
@@ -53,6 +52,21 @@ pub fn error_statement(film: &Film) -> Option<ErrorStatement> {
         relative_error_high: scaled.high.map(f64::sqrt),
         uncertified_pixels: scaled.uncertified,
     })
+}
+
+/// For each tile of a film what one sample of each of its pixels leaves of squared relative error, summed over pixels and
+/// channels: where more samples would help.
+pub fn noise(film: &Film) -> Vec<f64> {
+    let mean = mean(film);
+    let floor = FLOOR * mean * mean;
+    let of_tile = |tile: &Tile| sums(tile, [floor; 2])[0].plain() * tile.counts.size_of_all();
+    film.tiles.par_iter().map(of_tile).collect()
+}
+
+/// Mean over the pixels and channels of a film, in the order of its tiles.
+fn mean(film: &Film) -> f64 {
+    let brightness: Vec<f64> = film.tiles.par_iter().map(brightness).collect();
+    brightness.iter().sum::<f64>() / (3 * film.area.pixels()).max(1) as f64
 }
 
 /// Sum over the pixels and channels of a tile.

@@ -19,6 +19,7 @@ const KEYS: &[Key] = &[
     key("seed", "0"),
     key("fresnel", "\"exact\""),
     key("jitter", "true"),
+    key("adaptive", "true"),
     key("exposure", "0.0"),
     key("tile", "32"),
     key("photons", "262144"),
@@ -52,6 +53,8 @@ pub struct RenderTable {
     pub fresnel: Option<Fresnel>,
     /// `jitter`: whether a sample's place in its pixel is random.
     pub jitter: Option<bool>,
+    /// `adaptive`: whether samples go where the noise is.
+    pub adaptive: Option<bool>,
     /// `exposure` of the tone-mapped image, in stops, from -100 to 100.
     pub exposure: Option<f64>,
     /// `tile`, side of a tile in pixels, at least 1.
@@ -81,6 +84,7 @@ impl RenderTable {
             seed: section.read("seed", |node| node.whole(0, u64::MAX))?,
             fresnel: section.read("fresnel", |node| node.choice(&FRESNELS.map(|x| (x.name(), x))))?,
             jitter: section.read("jitter", Node::truth)?,
+            adaptive: section.read("adaptive", Node::truth)?,
             exposure: section.read("exposure", |node| node.number(Bounds::STOPS))?,
             tile: section.read("tile", |node| node.count(1))?,
             photons: section.read("photons", |node| node.whole(0, MOST_PHOTONS.into()))?.map(|photons| photons as u32),
@@ -104,6 +108,7 @@ impl RenderTable {
             seed: self.seed.unwrap_or(default.seed),
             fresnel: self.fresnel.unwrap_or(default.fresnel),
             jitter: self.jitter.unwrap_or(default.jitter),
+            adaptive: self.adaptive.unwrap_or(default.adaptive),
             camera: default.camera,
             photons: self.photons,
             radius: self.radius,
@@ -147,7 +152,7 @@ mod tests {
     fn every_setting_arrives() {
         let table = read(
             "[render]\nintegrator = 'whitted'\nsize = [4, 3]\ncrop = [1, 0, 3, 3]\nspp = 7\nshadow_rays = 0\nmax_bounces = 2\n\
-             sampler = 'independent'\nseed = 18446744073709551615\nfresnel = 'schlick'\njitter = false\nexposure = -1\ntile = 8\n\
+             sampler = 'independent'\nseed = 18446744073709551615\nfresnel = 'schlick'\njitter = false\nadaptive = true\nexposure = -1\ntile = 8\n\
              photons = 10000000\nradius = 0.25\n",
         );
         let expected = RenderTable {
@@ -161,6 +166,7 @@ mod tests {
             seed: Some(u64::MAX),
             fresnel: Some(Fresnel::Schlick),
             jitter: Some(false),
+            adaptive: Some(true),
             exposure: Some(-1.0),
             tile: Some(8),
             photons: Some(10_000_000),

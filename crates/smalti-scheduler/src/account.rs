@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use smalti_core::film::Film;
+use smalti_core::film::{Film, Tile};
 use smalti_core::render::{RayCounts, Work};
 
-use crate::{Outcome, Photons, Rejections, Timing};
+use crate::{Outcome, Photons, Rejections, Stopped, Timing};
 
 /// What is known of a tile besides its pixels.
 #[derive(Clone, Debug, Default)]
@@ -35,6 +35,13 @@ pub(crate) struct Done {
 }
 
 impl Record {
+    /// Rays of a sample of each pixel of `tile`, of all kinds; at least one a pixel.
+    pub(crate) fn rays_a_sample(&self, tile: &Tile) -> f64 {
+        let pixels = tile.pixels.len() as f64;
+        let RayCounts { camera, scattered, shadow } = self.rays;
+        ((camera + scattered + shadow) as f64 / self.samples.max(1) as f64).max(1.0) * pixels
+    }
+
     /// Adds a unit.
     pub(crate) fn add(&mut self, done: &Done) {
         self.last = done.elapsed;
@@ -46,15 +53,18 @@ impl Record {
     }
 }
 
-/// Fewest samples of any tile; `None` without tiles.
-pub(crate) fn least(film: &Film) -> Option<u32> {
-    film.tiles.iter().map(|tile| tile.samples()).min()
-}
-
 /// Adds up the records of all tiles.
-pub(crate) fn outcome(film: Film, spp: u32, records: Vec<Record>, photons: Photons, timing: Timing) -> Outcome {
+pub(crate) fn outcome(
+    film: Film,
+    (stopped, mean_samples): (Stopped, u32),
+    records: Vec<Record>,
+    photons: Photons,
+    timing: Timing,
+) -> Outcome {
     let mut outcome = Outcome {
-        interrupted: least(&film).is_some_and(|least| least < spp),
+        interrupted: stopped == Stopped::Cancelled,
+        stopped,
+        mean_samples,
         film,
         samples: 0,
         rays: RayCounts::default(),

@@ -22,7 +22,7 @@ pub enum Event {
         tiles: Vec<Rect>,
         /// Samples a pixel that the film had, in its least sampled tile.
         from: u32,
-        /// Samples a pixel when it is done.
+        /// Samples a pixel when it is done, as far as can be foreseen.
         until: u32,
         /// Samples (camera paths) to do, over all pixels.
         samples: u64,
@@ -71,8 +71,10 @@ pub enum Event {
     PassFinished {
         /// The pass, from 0.
         pass: u32,
-        /// Samples that every pixel has now.
+        /// Samples that every pixel has now, in the mean.
         samples: u32,
+        /// Samples a pixel that it will come to, as far as can be foreseen.
+        foreseen: u32,
         /// Time since the render began.
         elapsed: Duration,
         /// The watcher's own judgement of the error, where it made one.

@@ -6,8 +6,11 @@
 //! past tense ([`Event`]); no worker ever waits for a watcher.
 
 mod account;
+mod allot;
 mod cancel;
+mod course;
 mod event;
+mod goal;
 mod outcome;
 mod pass;
 mod pool;
@@ -16,10 +19,12 @@ mod render;
 mod shelf;
 mod unit;
 
+pub use allot::SIDE as ADAPTIVE_TILE;
 pub use cancel::Cancel;
 pub use event::{ErrorOf, Event, Watch};
+pub use goal::{BoundOf, Goal, NoiseOf, Stopped, Target};
 pub use outcome::{Balance, Outcome, Panicked, Photons, Rejections, Timing};
 pub use pool::{PoolError, pool};
 pub use progress::{Current, Progress};
-pub use render::{render, render_with};
+pub use render::{render, render_to, render_with};
 pub use shelf::Shelf;

@@ -8,13 +8,19 @@ use smalti_core::photon::Account;
 use smalti_core::render::{RayCounts, Rejected};
 use smalti_core::settings::Rect;
 
+use crate::Stopped;
+
 /// A film and the account of how it came about.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     /// The film. After an interruption the tiles may differ in their samples.
     pub film: Film,
-    /// Whether it was stopped before every pixel had its samples.
+    /// Whether someone stopped it before its goal.
     pub interrupted: bool,
+    /// Why it stopped.
+    pub stopped: Stopped,
+    /// Samples that every pixel had after the last pass that was finished; a mean where tiles take more or fewer.
+    pub mean_samples: u32,
     /// Samples (camera paths) that were added, over all pixels.
     pub samples: u64,
     /// Rays traced.

@@ -1,7 +1,7 @@
 //! A render from the first pass to the last.
 
 use std::cmp::Reverse;
-use std::sync::atomic::AtomicU64;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, RwLock};
 use std::time::{Duration, Instant};
 
@@ -10,9 +10,10 @@ use smalti_core::film::{Film, ROUND, Tile};
 use smalti_core::photon::{Account, Maps};
 use smalti_core::render::{Renderer, Work};
 
-use crate::account::{Record, least, outcome};
-use crate::unit::{Audience, Unit, Worker};
-use crate::{Cancel, Event, Outcome, Panicked, Photons, Progress, Shelf, Timing, Watch, pass};
+use crate::account::{Record, outcome};
+use crate::course::{Course, Step};
+use crate::unit::{Audience, Samples, Unit, Worker};
+use crate::{Cancel, Event, Goal, Outcome, Panicked, Photons, Progress, Shelf, Stopped, Timing, Watch};
 
 /// Adds samples to `film` until every pixel has as many as the renderer's settings ask for, on all workers of `pool`.
 /// A film that has samples already is continued.
@@ -26,7 +27,7 @@ pub fn render(
     cancel: &Cancel,
     watch: Option<Watch>,
 ) -> Result<Outcome, Panicked> {
-    render_with(renderer, film, pool, cancel, watch, None)
+    render_to(&Goal::default(), renderer, film, (pool, cancel), watch, None)
 }
 
 /// [`render`] with photon maps from a shelf, as far as they are there; the others are put there. The image is the same.
@@ -38,6 +39,24 @@ pub fn render_with(
     film: Film,
     pool: &ThreadPool,
     cancel: &Cancel,
+    watch: Option<Watch>,
+    shelf: Option<&dyn Shelf>,
+) -> Result<Outcome, Panicked> {
+    render_to(&Goal::default(), renderer, film, (pool, cancel), watch, shelf)
+}
+
+/// [`render_with`] that stops at a goal.
+///
+/// Where samples go where the noise is, the film's tiles should be [`ADAPTIVE_TILE`](crate::ADAPTIVE_TILE) pixels wide and
+/// high.
+///
+/// # Errors
+/// A worker panicked.
+pub fn render_to(
+    goal: &Goal,
+    renderer: &Renderer,
+    film: Film,
+    (pool, cancel): (&ThreadPool, &Cancel),
     watch: Option<Watch>,
     shelf: Option<&dyn Shelf>,
 ) -> Result<Outcome, Panicked> {
@@ -60,15 +79,20 @@ pub fn render_with(
         Photons { stored, nonfinite, bytes, account, radii, ..Photons::default() }
     };
     let job = Job {
-        spp: renderer.settings().spp,
+        goal,
+        spp: goal.spp.unwrap_or(renderer.settings().spp),
         seed: renderer.settings().seed,
         pool,
         cancel,
         workspace: &|| renderer.workspace(),
         emit: renderer.plan().photons.is_some().then_some(&emit),
-        advance: &|tile: &mut Tile, until, workspace: &mut _, done: &_| {
+        advance: &|tile: &mut Tile, (until, weight): Samples, workspace: &mut _, done: &_| {
             let maps = maps.read().unwrap_or_else(PoisonError::into_inner);
-            renderer.advance(tile, until, maps.as_ref().unwrap_or(&none), workspace, done)
+            let maps = maps.as_ref().unwrap_or(&none);
+            match weight {
+                None => renderer.advance(tile, until, maps, workspace, done),
+                Some(weight) => renderer.visit(tile, (until - tile.samples(), weight), maps, workspace, done),
+            }
         },
     };
     perform(&job, film, watch)
@@ -76,6 +100,8 @@ pub fn render_with(
 
 /// What is to be done and by whom; `workspace` and `advance` are the renderer's, or a test's.
 struct Job<'a, F, A> {
+    goal: &'a Goal<'a>,
+    /// Samples a pixel at most.
     spp: u32,
     seed: u64,
     pool: &'a ThreadPool,
@@ -94,7 +120,7 @@ type Crew<W> = Vec<Mutex<Worker<W>>>;
 
 /// Performs `job`.
 fn perform<W: Send>(
-    job: &Job<impl Fn() -> W + Sync, impl Fn(&mut Tile, u32, &mut W, &AtomicU64) -> Work + Sync>,
+    job: &Job<impl Fn() -> W + Sync, impl Fn(&mut Tile, Samples, &mut W, &AtomicU64) -> Work + Sync>,
     mut film: Film,
     watch: Option<Watch>,
 ) -> Result<Outcome, Panicked> {
@@ -104,42 +130,49 @@ fn perform<W: Send>(
     let mut records = vec![Record::default(); film.tiles.len()];
     let progress = Arc::new(Progress::new(crew.len(), Instant::now()));
     let audience = Audience { progress: &progress, watch: watch.as_ref() };
-    audience.tell(|| started(&film, job.spp, &progress));
-    let (passes, photons) = run_passes(job, &mut film, &mut records, &crew, &audience)?;
+    let mut course = Course::new(job.goal, job.spp, job.emit.is_some(), (film.samples().0, progress.start()));
+    audience.tell(|| started(&film, course.foreseen(), &progress));
+    let (passes, photons, stopped) = run_passes(job, &mut film, &mut records, (&crew, &mut course), &audience)?;
     let elapsed = [progress.start().elapsed(), photons.elapsed];
     let timing = timing(&film, &records, crew, elapsed, passes);
-    let outcome = outcome(film, job.spp, records, photons, timing);
+    let outcome = outcome(film, (stopped, course.samples()), records, photons, timing);
     audience.tell(|| Event::Finished { interrupted: outcome.interrupted, timing: outcome.timing.clone() });
     Ok(outcome)
 }
 
-/// Performs passes until every pixel has its samples or someone cancels; returns how many were completed,
-/// and what the photons came to.
+/// Performs passes until the goal is reached or someone cancels; returns how many were completed, what the photons came
+/// to, and why it stopped.
 fn run_passes<W: Send>(
-    job: &Job<impl Sync, impl Fn(&mut Tile, u32, &mut W, &AtomicU64) -> Work + Sync>,
+    job: &Job<impl Sync, impl Fn(&mut Tile, Samples, &mut W, &AtomicU64) -> Work + Sync>,
     film: &mut Film,
     records: &mut [Record],
-    crew: &Crew<W>,
+    (crew, course): (&Crew<W>, &mut Course),
     audience: &Audience,
-) -> Result<(u32, Photons), Panicked> {
+) -> Result<(u32, Photons, Stopped), Panicked> {
     let mut pass = 0;
     let mut judged = 0;
     let mut emitted = Emitted::default();
-    while let Some(until) = least(film).and_then(|done| pass::next(done, job.spp, job.emit.is_some())) {
-        if let Some(emit) = job.emit {
-            emitted.enter((until - 1) / ROUND, emit, audience);
+    let stopped = loop {
+        let step = match course.next(film, records) {
+            Ok(step) => step,
+            Err(why) => break why,
+        };
+        let emission = job.emit.and_then(|emit| emitted.enter(course.samples() / ROUND, emit, audience));
+        let begun = Instant::now();
+        let done = run_pass(job, units(film, records, (pass, step), course), crew, audience)?;
+        if !done {
+            break Stopped::Cancelled;
         }
-        run_pass(job, units(film, records, pass, until), crew, audience)?;
-        if least(film) < Some(until) {
-            break;
-        }
+        course.note(step, begun.elapsed(), emission);
         audience.tell(|| {
-            let error = judge(audience.watch, film, until, job.spp, &mut judged);
-            Event::PassFinished { pass, samples: until, elapsed: audience.progress.start().elapsed(), error }
+            let (samples, foreseen) = (course.samples(), course.foreseen());
+            let error = judge(audience.watch, film, samples, foreseen, &mut judged);
+            let elapsed = audience.progress.start().elapsed();
+            Event::PassFinished { pass, samples, foreseen, elapsed, error }
         });
         pass += 1;
-    }
-    Ok((pass, emitted.all))
+    };
+    Ok((pass, emitted.all, stopped))
 }
 
 /// The photons so far.
@@ -150,10 +183,10 @@ struct Emitted {
 }
 
 impl Emitted {
-    /// Sees to it that the photons are those of `round`.
-    fn enter(&mut self, round: u32, emit: &Emit, audience: &Audience) {
+    /// Sees to it that the photons are those of `round`. Returns the time that it took, if they were not.
+    fn enter(&mut self, round: u32, emit: &Emit, audience: &Audience) -> Option<Duration> {
         if self.round == Some(round) {
-            return;
+            return None;
         }
         self.round = Some(round);
         let begun = Instant::now();
@@ -163,22 +196,25 @@ impl Emitted {
         let photons = Photons { elapsed: begun.elapsed(), emitted: progress.photons(), ..photons };
         self.all.add(&photons);
         audience.tell(|| Event::PhotonsStored { round, photons });
+        Some(photons.elapsed)
     }
 }
 
-/// Performs `units` in their order, as workers become free. Stops handing out when someone cancels or panics.
+/// Performs `units` in their order, as workers become free. Stops handing out when someone cancels or panics. Returns
+/// whether all were done.
 fn run_pass<W: Send>(
-    job: &Job<impl Sync, impl Fn(&mut Tile, u32, &mut W, &AtomicU64) -> Work + Sync>,
+    job: &Job<impl Sync, impl Fn(&mut Tile, Samples, &mut W, &AtomicU64) -> Work + Sync>,
     units: Vec<Unit>,
     crew: &Crew<W>,
     audience: &Audience,
-) -> Result<(), Panicked> {
-    let panicked = OnceLock::new();
+) -> Result<bool, Panicked> {
+    let (panicked, left_out) = (OnceLock::new(), AtomicBool::new(false));
     job.pool.in_place_scope_fifo(|scope| {
         for unit in units {
-            let panicked = &panicked;
+            let (panicked, left_out) = (&panicked, &left_out);
             scope.spawn_fifo(move |_| {
                 if job.cancel.is_cancelled() || panicked.get().is_some() {
+                    left_out.store(true, Ordering::Relaxed);
                     return;
                 }
                 if let Err(place) = run_unit(job, unit, crew, audience) {
@@ -188,12 +224,12 @@ fn run_pass<W: Send>(
             });
         }
     });
-    panicked.into_inner().map_or(Ok(()), Err)
+    panicked.into_inner().map_or(Ok(!left_out.into_inner()), Err)
 }
 
 /// Performs `unit` on the thread that calls.
 fn run_unit<W: Send>(
-    job: &Job<impl Sync, impl Fn(&mut Tile, u32, &mut W, &AtomicU64) -> Work + Sync>,
+    job: &Job<impl Sync, impl Fn(&mut Tile, Samples, &mut W, &AtomicU64) -> Work + Sync>,
     unit: Unit,
     crew: &Crew<W>,
     audience: &Audience,
@@ -206,20 +242,34 @@ fn run_unit<W: Send>(
 }
 
 /// The units of a pass, the slowest of the pass before first: what is long must not begin last.
-fn units<'a>(film: &'a mut Film, records: &'a mut [Record], pass: u32, until: u32) -> Vec<Unit<'a>> {
+fn units<'a>(
+    film: &'a mut Film,
+    records: &'a mut [Record],
+    (pass, step): (u32, Step),
+    course: &Course,
+) -> Vec<Unit<'a>> {
+    let samples = |index: usize, tile: &Tile| match step {
+        Step::Until(until) => (until, None),
+        Step::More(more) => (tile.samples() + more, None),
+        Step::Visit(visit) => {
+            let (rounds, weight) = course.rounds(index, visit);
+            (tile.samples() + rounds * ROUND, Some(weight))
+        }
+    };
     let tiles = film.tiles.iter_mut().zip(records).enumerate();
-    let mut units: Vec<_> = tiles
-        .filter(|(_, (tile, _))| tile.samples() < until)
-        .map(|(index, (tile, record))| Unit { index, tile, record, pass, until })
-        .collect();
+    let unit = |(index, (tile, record)): (usize, (&'a mut Tile, &'a mut Record))| {
+        let (until, weight) = samples(index, tile);
+        (until > tile.samples()).then_some(Unit { index, tile, record, pass, until, weight })
+    };
+    let mut units: Vec<_> = tiles.filter_map(unit).collect();
     units.sort_by_key(|unit| Reverse(unit.record.last));
     units
 }
 
 /// The error as the watcher judges it: where the samples have doubled since the last time, as each time costs the same,
 /// and not at the end, where the error is stated from the whole film anyway.
-fn judge(watch: Option<&Watch>, film: &Film, samples: u32, spp: u32, judged: &mut u32) -> Option<f64> {
-    if samples < 2 * *judged || samples == spp {
+fn judge(watch: Option<&Watch>, film: &Film, samples: u32, foreseen: u32, judged: &mut u32) -> Option<f64> {
+    if samples < 2 * *judged || samples >= foreseen {
         return None;
     }
     *judged = samples;
@@ -266,7 +316,7 @@ mod tests {
     const AREA: Rect = Rect { x: 3, y: 5, width: 21, height: 17 };
 
     /// A renderer whose radiance is a function of pixel and sample; every seventh sample of row 9 is not finite.
-    fn fake(tile: &mut Tile, until: u32, _: &mut (), done: &AtomicU64) -> Work {
+    fn fake(tile: &mut Tile, (until, _): Samples, _: &mut (), done: &AtomicU64) -> Work {
         let mut work = Work::default();
         let before = tile.samples();
         for sample in before..until {
@@ -287,7 +337,7 @@ mod tests {
         work
     }
 
-    type Fake<'a> = &'a (dyn Fn(&mut Tile, u32, &mut (), &AtomicU64) -> Work + Sync);
+    type Fake<'a> = &'a (dyn Fn(&mut Tile, Samples, &mut (), &AtomicU64) -> Work + Sync);
 
     fn run(spp: u32, film: Film, threads: usize, watch: Option<Watch>, advance: Fake) -> Result<Outcome, Panicked> {
         run_until(&Cancel::default(), spp, film, threads, watch, advance)
@@ -303,7 +353,16 @@ mod tests {
     ) -> Result<Outcome, Panicked> {
         let pool = pool(threads).unwrap();
         perform(
-            &Job { spp, seed: 42, pool: &pool, cancel, workspace: &|| (), emit: None, advance: &advance },
+            &Job {
+                goal: &Goal::default(),
+                spp,
+                seed: 42,
+                pool: &pool,
+                cancel,
+                workspace: &|| (),
+                emit: None,
+                advance: &advance,
+            },
             film,
             watch,
         )
@@ -411,7 +470,7 @@ mod tests {
     fn cancel_finishes_what_runs_and_begins_nothing() {
         let (sender, events) = unbounded();
         let (cancel, units) = (Cancel::default(), AtomicU64::new(0));
-        let advance = |tile: &mut Tile, until, workspace: &mut (), done: &AtomicU64| {
+        let advance = |tile: &mut Tile, until: Samples, workspace: &mut (), done: &AtomicU64| {
             // In the middle of the third pass.
             if units.fetch_add(1, Relaxed) == 9 + 9 + 4 {
                 cancel.cancel();
@@ -430,8 +489,8 @@ mod tests {
     #[test]
     fn an_interrupted_film_is_continued_to_the_same_bits() {
         let cancel = Cancel::default();
-        let advance = |tile: &mut Tile, until, workspace: &mut (), done: &AtomicU64| {
-            if until == 8 && tile.area.x > 10 {
+        let advance = |tile: &mut Tile, until: Samples, workspace: &mut (), done: &AtomicU64| {
+            if until.0 == 8 && tile.area.x > 10 {
                 cancel.cancel();
             }
             fake(tile, until, workspace, done)
@@ -447,9 +506,9 @@ mod tests {
     fn a_panic_becomes_an_error_with_its_place() {
         for threads in [1, 3] {
             let begun = AtomicU64::new(0);
-            let advance = |tile: &mut Tile, until, workspace: &mut (), done: &AtomicU64| {
+            let advance = |tile: &mut Tile, until: Samples, workspace: &mut (), done: &AtomicU64| {
                 begun.fetch_add(1, Relaxed);
-                if until == 4 && (tile.area.x, tile.area.y) == (11, 5) {
+                if until.0 == 4 && (tile.area.x, tile.area.y) == (11, 5) {
                     resume_unwind(Box::new("a hole in the sphere".to_owned()));
                 }
                 fake(tile, until, workspace, done)
@@ -473,7 +532,10 @@ mod tests {
         records[7].last = Duration::from_millis(5);
         records[2].last = Duration::from_millis(9);
         records[3].last = Duration::from_millis(99);
-        let order: Vec<_> = units(&mut film, &mut records, 0, 8).iter().map(|unit| unit.index).collect();
+        let goal = Goal::default();
+        let course = Course::new(&goal, 8, false, (0, Instant::now()));
+        let order: Vec<_> =
+            units(&mut film, &mut records, (0, Step::Until(8)), &course).iter().map(|unit| unit.index).collect();
         assert_eq!(order, [2, 7, 0, 1, 4, 5, 6, 8]);
     }
 

@@ -23,7 +23,12 @@ pub(crate) struct Unit<'a> {
     pub pass: u32,
     /// Samples that every pixel has afterwards.
     pub until: u32,
+    /// How often each counts, where they are a round of their own.
+    pub weight: Option<f64>,
 }
+
+/// The samples that every pixel is to have, and how often the new ones count where they are a round of their own.
+pub(crate) type Samples = (u32, Option<f64>);
 
 /// A worker's own things.
 pub(crate) struct Worker<W> {
@@ -58,12 +63,14 @@ impl Unit<'_> {
         self,
         worker: &mut Worker<W>,
         audience: &Audience,
-        advance: &impl Fn(&mut Tile, u32, &mut W, &AtomicU64) -> Work,
+        advance: &impl Fn(&mut Tile, Samples, &mut W, &AtomicU64) -> Work,
     ) -> Result<(), String> {
         let samples = self.tile.area.pixels() as u64 * u64::from(self.until - self.tile.samples());
         let begun = Instant::now();
         let counter = audience.progress.begin(worker.index, self.index, samples, begun);
-        let work = catch_unwind(AssertUnwindSafe(|| advance(self.tile, self.until, &mut worker.workspace, counter)));
+        let work = catch_unwind(AssertUnwindSafe(|| {
+            advance(self.tile, (self.until, self.weight), &mut worker.workspace, counter)
+        }));
         audience.progress.end(worker.index);
         let elapsed = begun.elapsed();
         worker.busy += elapsed;

@@ -6,8 +6,11 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use smalti_core::photon::SUB_MAPS;
 use smalti_core::settings::{MOST_PHOTONS, MOST_SHADOW_RAYS, Rect};
 
-use crate::names::{ColourArg, FresnelArg, IntegratorArg, MapArg, SamplerArg, SimdArg};
-use crate::parse::{Size, parse_crop, parse_finite, parse_length, parse_size, parse_threads, parse_threshold};
+use crate::names::{ColourArg, FresnelArg, IntegratorArg, MapArg, SamplerArg, SimdArg, SwitchArg};
+use crate::parse::{
+    Size, parse_crop, parse_finite, parse_length, parse_seconds, parse_share, parse_size, parse_threads,
+    parse_threshold,
+};
 use crate::study::args::StudyArgs;
 
 /// A physically based CPU renderer for people who work in a terminal.
@@ -71,6 +74,8 @@ pub struct RenderArgs {
     /// Keep photon maps in this file and take them from it: renders of the same scene, with any camera, share them
     #[arg(long, value_name = "FILE")]
     pub photon_map: Option<PathBuf>,
+    #[command(flatten)]
+    pub budget: BudgetArgs,
     /// Exit with 1 if a sample was not finite
     #[arg(long)]
     pub strict: bool,
@@ -111,6 +116,17 @@ Examples:
   smalti report hexroom-study-sweep -o ~/sweep.html  the page elsewhere; it needs no other file
   smalti report hexroom-study-sweep --json -q        findings and verdicts for a script";
 
+/// When a render stops, other than by its samples.
+#[derive(Clone, Copy, Debug, Default, Args)]
+pub struct BudgetArgs {
+    /// Use this time, from the start of the process to its end, for as many samples as it gives; --spp is the most then
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
+    pub time: Option<f64>,
+    /// Stop when the relative error is at most this, with 95 % confidence: 1% or 0.01; --spp is the most samples then
+    #[arg(long, value_name = "SHARE", value_parser = parse_share)]
+    pub target_error: Option<f64>,
+}
+
 /// How the machine is used, and what is told meanwhile.
 #[derive(Debug, Args)]
 pub struct RunArgs {
@@ -138,6 +154,8 @@ Examples:
   smalti render room.toml --downsample 2 --spp 16    2x2 pixels for each one of the image, averaged
   smalti render room.toml --crop 120,80,64,64        these pixels as in the whole image, bit for bit
   smalti render room.toml --json --progress none     for a script
+  smalti render room.toml --target-error 2%          as many samples as it takes
+  smalti render room.toml --time 10s --adaptive on   what ten seconds give, where it is needed
 
 Flags override the scene's [render] table. Threads, tile size and SIMD level change no bit of the image.
 Ctrl-C keeps the picture so far; twice leaves at once.";
@@ -187,6 +205,9 @@ pub struct ImageArgs {
     /// Reflectance of dielectrics
     #[arg(long, value_name = "NAME")]
     pub fresnel: Option<FresnelArg>,
+    /// Whether samples go where the noise is; --spp is their mean then [default: the scene's, or off]
+    #[arg(long, value_name = "WHETHER")]
+    pub adaptive: Option<SwitchArg>,
 }
 
 /// Flags that say how the machine works; no bit of the image depends on them.

@@ -8,11 +8,11 @@ use smalti_core::scene::World;
 use smalti_core::settings::{Rect, Settings};
 
 use crate::args::ImageArgs;
-use crate::downsample;
 use crate::exit::Failure;
 use crate::memory;
-use crate::names::SimdArg;
+use crate::names::{SimdArg, SwitchArg};
 use crate::parse::Size;
+use crate::{budget, downsample};
 
 /// A scene with the settings of its render, checked.
 #[derive(Debug)]
@@ -75,8 +75,7 @@ impl Job {
 
     /// Side of a tile in pixels.
     pub fn tile(&self, typed: Option<u32>) -> u32 {
-        // What becomes one pixel lies in one tile.
-        typed.or(self.tile).unwrap_or(TILE).next_multiple_of(self.downsample)
+        budget::tile(self.settings.adaptive, self.downsample, typed.or(self.tile).unwrap_or(TILE))
     }
 
     /// Brightness of tone-mapped files in stops.
@@ -121,6 +120,7 @@ fn merge(scene: Settings, flags: &ImageArgs, world: &World) -> Result<Settings, 
         seed: flags.seed.unwrap_or(scene.seed),
         fresnel: flags.fresnel.map_or(scene.fresnel, Into::into),
         jitter: scene.jitter && !flags.no_jitter,
+        adaptive: flags.adaptive.map_or(scene.adaptive, |typed| typed == SwitchArg::On),
         camera: named.unwrap_or(scene.camera),
         photons: flags.photons.or(scene.photons),
         radius: flags.radius.or(scene.radius),
@@ -229,6 +229,7 @@ mod tests {
             crop: Some(crop),
             camera: Some("left".into()),
             no_jitter: true,
+            adaptive: Some(SwitchArg::On),
             fresnel: Some(FresnelArg::Schlick),
             photons: Some(5),
             radius: Some(0.5),
@@ -245,6 +246,7 @@ mod tests {
             seed: u64::MAX,
             fresnel: Fresnel::Schlick,
             jitter: false,
+            adaptive: true,
             camera: 1,
             photons: Some(5),
             radius: Some(0.5),

@@ -1,6 +1,7 @@
 //! The program `smalti`: arguments, commands and frontends around the renderer.
 
 mod args;
+mod budget;
 mod commands;
 mod describe;
 mod downsample;

@@ -143,6 +143,13 @@ impl SimdArg {
     }
 }
 
+/// Whether something is done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SwitchArg {
+    On,
+    Off,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

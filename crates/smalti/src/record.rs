@@ -18,6 +18,8 @@ pub struct SettingsRecord {
     pub sampler: &'static str,
     pub fresnel: &'static str,
     pub jitter: bool,
+    /// Whether samples went where the noise is; `spp` is their mean then.
+    pub adaptive: bool,
     #[serde(flatten)]
     pub picture: PictureRecord,
     /// Pixels that were rendered for each one of the image, in each direction.
@@ -40,6 +42,7 @@ pub fn settings(job: &Job) -> SettingsRecord {
         sampler: settings.sampler.name(),
         fresnel: settings.fresnel.name(),
         jitter: settings.jitter,
+        adaptive: settings.adaptive,
         picture: PictureRecord::new(job),
         downsample: job.downsample,
         shadow_rays: settings.shadow_rays,

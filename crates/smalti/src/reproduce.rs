@@ -61,6 +61,9 @@ fn flags(settings: &Settings, spp: u32, camera: &str) -> String {
     if !settings.jitter {
         flags += " --no-jitter";
     }
+    if settings.adaptive {
+        flags += " --adaptive on";
+    }
     flags
 }
 
@@ -98,6 +101,7 @@ mod tests {
             seed: u64::MAX,
             fresnel: Fresnel::Schlick,
             jitter: false,
+            adaptive: true,
             camera: 1,
             photons: Some(77),
             radius: Some(0.125),
@@ -124,7 +128,7 @@ mod tests {
         assert_eq!(flags.seed, Some(wanted.seed));
         assert_eq!(flags.fresnel.map(Into::into), Some(wanted.fresnel));
         assert_eq!(flags.camera.as_deref(), Some("-left"));
-        assert!(flags.no_jitter);
+        assert!(flags.no_jitter && flags.adaptive == Some(crate::names::SwitchArg::On));
     }
 
     #[test]

@@ -10,10 +10,10 @@ use smalti_core::settings::{Fresnel, Integrator, Rect, Settings};
 use smalti_measure::{BiasStatement, ErrorStatement};
 use smalti_scheduler::{Outcome, Timing};
 
-use crate::error_statement;
 use crate::job::Job;
 use crate::record::{self, RunRecord, SettingsRecord, Work};
 use crate::reproduce;
+use crate::{budget, error_statement};
 
 /// Everything that is told of a render. Times in seconds; what does not exist is null.
 #[derive(Debug, Serialize)]
@@ -23,7 +23,7 @@ pub struct Summary {
     pub scene_hash: String,
     #[serde(flatten)]
     pub settings: SettingsRecord,
-    /// Fewest and most samples of any pixel; they differ only after an interruption.
+    /// Fewest and most samples of any pixel; they differ after an interruption and where samples went to the noise.
     pub samples_least: u32,
     pub samples_most: u32,
     /// Complete rounds of every pixel: what the error is judged by.
@@ -59,9 +59,9 @@ pub struct Summary {
     pub tiles: Option<TilesRecord>,
     /// Share of the workers' time for tiles that was spent waiting.
     pub idle: f64,
-    /// `spp` or `interrupt`.
+    /// `spp`, `time`, `error` or `interrupt`.
     pub stopped_by: &'static str,
-    /// Whether every pixel has the samples that were asked for.
+    /// Whether it came to what was asked for: the error, the time, or else the samples.
     pub target_reached: bool,
     pub outputs: Vec<String>,
     /// Null where samples differ between tiles: no command gives that image.
@@ -154,11 +154,16 @@ pub fn summary(job: &Job, work: Work, outcome: &Outcome, developed: &Developed) 
         biases: biases(&job.settings, &job.world, outcome.capped),
         tiles: tiles(&outcome.timing),
         idle: idle.iter().sum::<f64>() / idle.len().max(1) as f64,
-        stopped_by: if outcome.interrupted { "interrupt" } else { "spp" },
-        target_reached: least >= job.settings.spp,
+        stopped_by: budget::name(outcome.stopped),
+        target_reached: !outcome.interrupted,
         outputs: Vec::new(),
-        reproduce: (least == most).then(|| reproduce(job, least)),
+        reproduce: repeatable(job, outcome, (least, most)).then(|| reproduce(job, outcome.mean_samples)),
     }
+}
+
+/// Whether the samples are those of whole passes: after an interruption they are of some tiles only.
+fn repeatable(job: &Job, outcome: &Outcome, (least, most): (u32, u32)) -> bool {
+    if job.settings.adaptive { !outcome.interrupted } else { least == most }
 }
 
 /// The command that makes the image again.

@@ -6,9 +6,10 @@ use std::time::Instant;
 use rayon::ThreadPool;
 use smalti_core::film::Film;
 use smalti_core::render::Renderer;
-use smalti_scheduler::{Outcome, Shelf, Watch, render_with};
+use smalti_scheduler::{Goal, Outcome, Shelf, Watch, render_to};
 
 use crate::args::{ProgressArg, RenderArgs, When};
+use crate::budget::Budget;
 use crate::describe::describe;
 use crate::exit::{Failure, Status};
 use crate::frontend::{self, Mode, Title};
@@ -34,9 +35,14 @@ pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Fa
 
     let mode = Mode::choose(args.run.progress, args.run.quiet, colour);
     let film = Film::new(job.settings.area(), work.tile);
+    let budget = Budget::new(&args.budget, args.image.spp);
+    let goal = budget.goal(&job.settings, job.downsample, &pool, start);
     let workers =
         Workers { pool: &pool, interrupt: &interrupt, photon_map: photon_map.as_ref(), downsample: job.downsample };
-    let mut outcome = perform(&renderer, film, &workers, mode, title(&job, work, args.exposure))?;
+    let mut outcome = perform(&goal, (&renderer, film), &workers, mode, title(&job, work, args.exposure))?;
+    if budget.is_open() {
+        job.settings.spp = outcome.mean_samples;
+    }
     let kept = photon_map.map_or(Ok(()), PhotonMap::finish);
     let developed = pool.install(|| develop(&outcome.film, job.downsample));
     // Encoding needs memory too: the film, six times as large as the image, makes room.
@@ -46,6 +52,7 @@ pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Fa
     }
     if developed.samples.1 > 0 {
         let mut summary = summary(&job, work, &outcome, &developed);
+        summary.target_reached = budget.is_reached(outcome.stopped);
         let written = write(&outputs, &developed, &mut summary, job.exposure(args.exposure));
         summary.run.wall_seconds = start.elapsed().as_secs_f64();
         tell(args, &summary, messages)?;
@@ -87,12 +94,19 @@ struct Workers<'a> {
 }
 
 /// Renders while a display shows it.
-fn perform(renderer: &Renderer, film: Film, workers: &Workers, mode: Mode, title: Title) -> Result<Outcome, Failure> {
+fn perform(
+    goal: &Goal,
+    (renderer, film): (&Renderer, Film),
+    workers: &Workers,
+    mode: Mode,
+    title: Title,
+) -> Result<Outcome, Failure> {
     let (display, watch) = frontend::start(mode, title);
     let error = error_statement::live(film.area.pixels(), workers.downsample);
     let watch = watch.map(|watch| Watch { error: Some(Box::new(error)), ..watch });
     let shelf = workers.photon_map.map(|map| map as &dyn Shelf);
-    let outcome = render_with(renderer, film, workers.pool, &workers.interrupt.cancel, watch, shelf);
+    let hands = (workers.pool, &workers.interrupt.cancel);
+    let outcome = render_to(goal, renderer, film, hands, watch, shelf);
     display.finish();
     outcome.map_err(Failure::bug)
 }

@@ -48,7 +48,13 @@ pub fn first_pass(workers: usize) -> Vec<Event> {
     facts.insert(0, Event::Started { area: AREA, tiles, from: 0, until: 64, samples: 64 * 64 * 64, progress });
     let rejected = Rejected { pixel: (12, 30), sample: 0 };
     facts.push(Event::SampleRejected(rejected));
-    facts.push(Event::PassFinished { pass: 0, samples: 1, elapsed: Duration::from_millis(80), error: Some(0.0213) });
+    facts.push(Event::PassFinished {
+        pass: 0,
+        samples: 1,
+        foreseen: 64,
+        elapsed: Duration::from_millis(80),
+        error: Some(0.0213),
+    });
     facts
 }
 

@@ -81,9 +81,9 @@ fn object(event: &Event, title: &Title) -> Value {
         Event::SampleRejected(rejected) => json!({
             "event": "sample_rejected", "pixel": rejected.pixel, "sample": rejected.sample,
         }),
-        Event::PassFinished { pass, samples, elapsed, error } => json!({
+        Event::PassFinished { pass, samples, foreseen, elapsed, error } => json!({
             "event": "pass_finished", "pass": pass, "spp": samples, "seconds": elapsed.as_secs_f64(),
-            "relative_error": error,
+            "relative_error": error, "foreseen_spp": foreseen,
         }),
         Event::Finished { interrupted, timing } => finished(*interrupted, timing),
     }
@@ -141,7 +141,8 @@ mod tests {
     #[test]
     fn numbers_that_do_not_exist_are_null() {
         let timing = Timing::default();
-        let pass = Event::PassFinished { pass: 0, samples: 1, elapsed: Duration::ZERO, error: Some(f64::NAN) };
+        let pass =
+            Event::PassFinished { pass: 0, samples: 1, foreseen: 64, elapsed: Duration::ZERO, error: Some(f64::NAN) };
         let lines = lines(&[pass, Event::Finished { interrupted: false, timing }]);
         assert!(lines[0]["relative_error"].is_null());
         assert!(lines[1]["tile_seconds"].is_null() && lines[1]["slowest_tile"].is_null());

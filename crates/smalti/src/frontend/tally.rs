@@ -84,8 +84,8 @@ impl Tally {
             Event::PhotonsEmitted { photons, .. } => self.photons = Some((0, *photons)),
             Event::PhotonsStored { .. } => self.photons = None,
             Event::SampleRejected(_) => {}
-            Event::PassFinished { samples, error, .. } => {
-                self.samples = *samples;
+            Event::PassFinished { samples, foreseen, error, .. } => {
+                self.foresee(*samples, *foreseen);
                 self.error = error.map(|error| (error, *samples)).or(self.error);
             }
             Event::Finished { interrupted, timing } => {
@@ -93,6 +93,13 @@ impl Tally {
                 self.end = Some(End { interrupted: *interrupted, timing: timing.clone() });
             }
         }
+    }
+
+    /// Takes what is foreseen into the account: as many more samples a pixel as are missing.
+    fn foresee(&mut self, samples: u32, foreseen: u32) {
+        (self.samples, self.until) = (samples, foreseen);
+        let missing = u64::from(foreseen.saturating_sub(samples)) * self.area.pixels() as u64;
+        self.total = self.finished + missing;
     }
 
     /// Looks at what the workers have in hand at `now`.

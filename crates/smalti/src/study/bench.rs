@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
+use std::time::Instant;
 
 use rayon::ThreadPool;
 use smalti_core::film::Film;
@@ -10,6 +11,7 @@ use smalti_core::settings::Settings;
 use smalti_scheduler::Outcome;
 
 use super::way::Way;
+use crate::budget::{self, Budget};
 use crate::exit::Failure;
 use crate::interrupt::Interrupt;
 use crate::job::{Job, check_memory};
@@ -79,8 +81,10 @@ impl<'a> Bench<'a> {
         let pool = pool(&mut self.pools, way.threads)?;
         let renderer = pool.install(|| Renderer::new(&job.world, settings.clone(), job.level));
         let renderer = renderer.map_err(Failure::user)?;
-        let film = Film::new(settings.area(), tile);
-        let outcome = smalti_scheduler::render(&renderer, film, pool, cancel, None).map_err(Failure::bug)?;
+        let film = Film::new(settings.area(), budget::tile(settings.adaptive, way.downsample, tile));
+        let goal = Budget::default().goal(&settings, way.downsample, pool, Instant::now());
+        let outcome = smalti_scheduler::render_to(&goal, &renderer, film, (pool, cancel), None, None);
+        let outcome = outcome.map_err(Failure::bug)?;
         if outcome.interrupted || cancel.is_cancelled() { Err(Halt::Interrupted) } else { Ok((settings, outcome)) }
     }
 

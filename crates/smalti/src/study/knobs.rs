@@ -106,6 +106,16 @@ pub const KNOBS: &[Knob] = &[
         around: |_| ["on", "off"].map(String::from).to_vec(),
     },
     Knob {
+        name: "adaptive",
+        help: "Whether samples go where the noise is: on, off",
+        words: "adaptive #",
+        short: "adaptive-#",
+        set: |way, text| on_or_off(text).map(|on| way.image.adaptive = on),
+        get: |way| if way.image.adaptive { "on" } else { "off" }.into(),
+        applies: always,
+        around: |_| ["on", "off"].map(String::from).to_vec(),
+    },
+    Knob {
         name: "max-bounces",
         help: "Scattering events after which a path ends; none: roulette alone ends it",
         words: "max bounces #",

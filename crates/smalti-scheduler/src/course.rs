@@ -1,0 +1,251 @@
+//! The course of a render: which pass is next, and whether there is one.
+//!
+//! A pass is chosen by numbers of samples and by what they say, so that the same course can be taken again; time alone
+//! decides how far it is followed.
+
+use std::time::{Duration, Instant};
+
+use smalti_core::film::{Film, ROUND};
+
+use crate::account::Record;
+use crate::allot::{AHEAD, Need, Stage};
+use crate::goal::{Goal, Stopped, Target};
+use crate::pass;
+
+/// Samples a pixel at most where only time or an error ends a render.
+pub(crate) const MOST_SAMPLES: u32 = 1 << 24;
+
+/// With a deadline a pass takes at most this part of the time that there is.
+const PART: f64 = 0.02;
+
+/// Samples a pixel at which the error is judged first.
+const FIRST_LOOK: u32 = 4 * ROUND;
+
+/// The next look is where the error should be this much below the target, in squares.
+const MARGIN: f64 = 1.03;
+
+/// What is to be done next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Step {
+    /// Every tile gets samples until it has so many.
+    Until(u32),
+    /// Every tile gets so many more, each of which counts once.
+    More(u32),
+    /// Every tile gets its rounds of this pass of the stage.
+    Visit(u32),
+}
+
+/// Where a render stands.
+pub(crate) struct Course<'a> {
+    goal: &'a Goal<'a>,
+    /// Samples a pixel at most.
+    spp: u32,
+    /// Whether each round has photons of its own.
+    photons: bool,
+    /// When it began.
+    start: Instant,
+    /// Samples a pixel in the mean, and the time that tiles took for them, after each pass.
+    marks: Vec<(u32, Duration)>,
+    /// Time for the photons of a round.
+    emission: Duration,
+    /// Samples a pixel at which the error is judged next.
+    look: u32,
+    stage: Stage,
+}
+
+impl<'a> Course<'a> {
+    /// A render to `goal` of at most `spp` samples a pixel, which begins now with `from`.
+    pub fn new(goal: &'a Goal<'a>, spp: u32, photons: bool, (from, start): (u32, Instant)) -> Self {
+        let marks = vec![(from, Duration::ZERO)];
+        let look = FIRST_LOOK.max(from);
+        Self { goal, spp, photons, start, marks, emission: Duration::ZERO, look, stage: Stage::default() }
+    }
+
+    /// Samples a pixel so far, in the mean.
+    pub fn samples(&self) -> u32 {
+        self.marks.last().map_or(0, |mark| mark.0)
+    }
+
+    /// The next step; or why there is none.
+    pub fn next(&mut self, film: &Film, records: &[Record]) -> Result<Step, Stopped> {
+        let done = self.samples();
+        if let Some(target) = &self.goal.target
+            && done == self.look
+            && self.is_reached(target, film)
+        {
+            return Err(Stopped::Error);
+        }
+        let longest =
+            pass::next(done, self.spp.min(self.goal.target.as_ref().map_or(u32::MAX, |_| self.look)), self.photons);
+        let longest = longest.ok_or(Stopped::Samples)? - done;
+        let fitting = self.fitting(done)?;
+        if self.goal.noise.is_none() || done < AHEAD * ROUND {
+            return Ok(Step::Until(done + longest.min(fitting)));
+        }
+        let left = (self.spp - done).min(fitting);
+        if left < ROUND {
+            return Ok(Step::More(left));
+        }
+        let pass = done / ROUND;
+        if !self.stage.has(pass) {
+            self.stage = Stage::new(pass, &self.needs(film, records));
+        }
+        Ok(Step::Visit(pass))
+    }
+
+    /// Notes what a step took, photons apart.
+    pub fn note(&mut self, step: Step, tiles: Duration, emission: Option<Duration>) {
+        let (done, so_far) = *self.marks.last().expect("there is a first mark");
+        let now = match step {
+            Step::Until(until) => until,
+            Step::More(more) => done + more,
+            Step::Visit(_) => done + ROUND,
+        };
+        self.marks.push((now, so_far + tiles));
+        self.emission = emission.unwrap_or(self.emission);
+    }
+
+    /// Rounds that `tile` takes of pass `pass`, and how often each sample counts.
+    pub fn rounds(&self, tile: usize, pass: u32) -> (u32, f64) {
+        self.stage.rounds(tile, pass)
+    }
+
+    /// Samples a pixel that it will come to, as far as can be foreseen.
+    pub fn foreseen(&self) -> u32 {
+        let done = self.samples();
+        let look = self.goal.target.as_ref().map_or(u32::MAX, |_| self.look.max(done));
+        let in_time = self.left().zip(self.seconds_a_sample()).map_or(u32::MAX, |(left, each)| {
+            let emission = self.emission.as_secs_f64() / f64::from(ROUND);
+            done.saturating_add((left / (each + emission)) as u32)
+        });
+        self.spp.min(look).min(in_time)
+    }
+
+    /// Asks for the error; if it is too large, says when to ask again.
+    fn is_reached(&mut self, target: &Target, film: &Film) -> bool {
+        let bound = (target.at_most)(film);
+        if bound.is_some_and(|bound| bound <= target.error) {
+            return true;
+        }
+        let factor = bound.map_or(1.5, |bound| MARGIN * (bound / target.error) * (bound / target.error));
+        let next = f64::from(self.look) * factor.clamp(1.1, 2.0);
+        self.look = (next.min(f64::from(MOST_SAMPLES)) as u32).next_multiple_of(ROUND);
+        false
+    }
+
+    /// Samples a pixel that there is time for, at most [`PART`] of all the time, at least 1.
+    fn fitting(&self, done: u32) -> Result<u32, Stopped> {
+        let Some(left) = self.left() else { return Ok(u32::MAX) };
+        // How long a sample takes is not known before the first one.
+        let Some(each) = self.seconds_a_sample() else { return Ok(1) };
+        let photons = if self.photons && done.is_multiple_of(ROUND) { self.emission.as_secs_f64() } else { 0.0 };
+        let fitting = (left - photons) / each;
+        if fitting < 0.5 {
+            return Err(Stopped::Time);
+        }
+        let all = self.goal.deadline.map_or(0.0, |deadline| seconds_to(self.start, deadline));
+        let part = (all * PART / each).max(if self.goal.noise.is_some() { f64::from(ROUND) } else { 1.0 });
+        Ok(fitting.round().min(part).max(1.0) as u32)
+    }
+
+    /// Seconds that are left; `None` without a deadline.
+    fn left(&self) -> Option<f64> {
+        self.goal.deadline.map(|deadline| seconds_to(Instant::now(), deadline))
+    }
+
+    /// Seconds that tiles take for a sample a pixel, over the last half of the samples.
+    fn seconds_a_sample(&self) -> Option<f64> {
+        let &(now, time) = self.marks.last()?;
+        let from = self.marks.iter().rev().find(|mark| mark.0 <= now / 2).or(self.marks.first())?;
+        (now > from.0).then(|| (time - from.1).as_secs_f64() / f64::from(now - from.0))
+    }
+
+    fn needs(&self, film: &Film, records: &[Record]) -> Vec<Need> {
+        let noise = self.goal.noise.as_ref().map(|noise| noise(film)).unwrap_or_default();
+        let tiles = film.tiles.iter().zip(records).zip(noise);
+        tiles.map(|((tile, record), noise)| Need { area: tile.area, noise, cost: record.rays_a_sample(tile) }).collect()
+    }
+}
+
+/// Seconds from one instant to another; below 0 if it is past.
+fn seconds_to(from: Instant, to: Instant) -> f64 {
+    match to.checked_duration_since(from) {
+        Some(left) => left.as_secs_f64(),
+        None => -from.duration_since(to).as_secs_f64(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use smalti_core::settings::Rect;
+
+    use super::*;
+
+    fn film() -> Film {
+        Film::new(Rect { x: 0, y: 0, width: 1, height: 1 }, 1)
+    }
+
+    /// The ends of the passes of a render, and why it stopped.
+    fn ends(course: &mut Course) -> (Vec<u32>, Stopped) {
+        let mut ends = Vec::new();
+        loop {
+            match course.next(&film(), &[]) {
+                Ok(step) => course.note(step, Duration::from_millis(1), None),
+                Err(why) => return (ends, why),
+            }
+            ends.push(course.samples());
+        }
+    }
+
+    #[test]
+    fn samples_alone_make_the_passes_of_before() {
+        let goal = Goal::default();
+        let mut course = Course::new(&goal, 100, false, (0, Instant::now()));
+        assert_eq!(ends(&mut course), (vec![1, 2, 4, 8, 16, 32, 64, 96, 100], Stopped::Samples));
+    }
+
+    /// An error of 8 % at 64 samples that falls as it should, to 1 %.
+    #[test]
+    fn an_error_is_reached_after_few_looks() {
+        let looks = std::sync::atomic::AtomicU32::new(0);
+        let samples = std::sync::atomic::AtomicU32::new(0);
+        let at_most = |_: &Film| {
+            looks.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+            Some(0.08 * (64.0 / f64::from(samples.load(std::sync::atomic::Ordering::Relaxed))).sqrt())
+        };
+        let goal = Goal { target: Some(Target { error: 0.01, at_most: Box::new(at_most) }), ..Goal::default() };
+        let mut course = Course::new(&goal, MOST_SAMPLES, false, (0, Instant::now()));
+        loop {
+            samples.store(course.samples(), std::sync::atomic::Ordering::Relaxed);
+            match course.next(&film(), &[]) {
+                Ok(step) => course.note(step, Duration::from_millis(1), None),
+                Err(why) => break assert_eq!(why, Stopped::Error),
+            }
+        }
+        assert!((4096..4400).contains(&course.samples()), "{}", course.samples());
+        assert!(looks.load(std::sync::atomic::Ordering::Relaxed) <= 8);
+    }
+
+    #[test]
+    fn a_deadline_that_is_past_stops_after_one_sample() {
+        let goal = Goal { deadline: Some(Instant::now()), ..Goal::default() };
+        let mut course = Course::new(&goal, MOST_SAMPLES, false, (0, Instant::now()));
+        assert_eq!(ends(&mut course), (vec![1], Stopped::Time));
+    }
+
+    #[test]
+    fn passes_are_short_beside_the_time_that_there_is() {
+        let start = Instant::now();
+        let goal = Goal { deadline: Some(start + Duration::from_secs(1000)), ..Goal::default() };
+        let mut course = Course::new(&goal, MOST_SAMPLES, false, (0, start));
+        // A second a sample: 2 % of the time are 20 samples, also when the next pass would take 32.
+        while course.samples() < 200 {
+            let step = course.next(&film(), &[]).unwrap();
+            let before = course.samples();
+            let Step::Until(until) = step else { panic!("{step:?}") };
+            assert!(until - before <= 20);
+            course.note(step, Duration::from_secs((until - before).into()), None);
+        }
+        assert!((900..=1300).contains(&course.foreseen()), "{}", course.foreseen());
+    }
+}
