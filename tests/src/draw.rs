@@ -8,7 +8,7 @@ use smalti_core::render::{Level, Renderer};
 use smalti_core::scene::World;
 use smalti_core::settings::Settings;
 use smalti_scene::Loaded;
-use smalti_scheduler::{Cancel, Outcome, Watch};
+use smalti_scheduler::{ADAPTIVE_TILE, Cancel, Goal, Outcome, Watch};
 
 /// The root of the repository.
 pub fn repository() -> PathBuf {
@@ -63,6 +63,17 @@ pub fn render(world: &World, settings: &Settings, way: Way, watch: Option<Watch>
     let pool = smalti_scheduler::pool(way.threads).expect("threads");
     let film = Film::new(settings.area(), way.tile);
     smalti_scheduler::render(&renderer, film, &pool, &Cancel::default(), watch).expect("no panic")
+}
+
+/// The film of `world`; where samples go to the noise, its tiles are as that wants them.
+pub fn film(world: &World, settings: &Settings, way: Way) -> Film {
+    let renderer = renderer(world, settings, way.level);
+    let pool = smalti_scheduler::pool(way.threads).expect("threads");
+    let tile = if settings.adaptive { ADAPTIVE_TILE } else { way.tile };
+    let noise = settings.adaptive.then_some(Box::new(smalti_measure::noise) as _);
+    let (goal, film) = (Goal { noise, ..Goal::default() }, Film::new(settings.area(), tile));
+    let hands = (&pool, &Cancel::default());
+    smalti_scheduler::render_to(&goal, &renderer, film, hands, None, None).expect("no panic").film
 }
 
 /// The image of `world`.

@@ -162,7 +162,6 @@ fn well_behaved_noise_is_covered_as_claimed() {
         ("gaussian, uneven batches", simulate(Noise::Gaussian(0.3), Scene::Room, 6, true)),
         ("texture", simulate(Noise::Gaussian(1.0), Scene::Texture, 4, true)),
         ("exponential texture", simulate(Noise::Exponential, Scene::Texture, 4, true)),
-        ("gaussian, colours apart", simulate(Noise::Gaussian(0.3), Scene::Room, 8, false)),
         ("wide gaussian", simulate(Noise::Gaussian(1.0), Scene::Room, 4, true)),
         ("contrast", simulate(Noise::Gaussian(1.0), Scene::Contrast, 4, true)),
         ("exponential, 64 samples", simulate(Noise::Exponential, Scene::Room, 4, true)),
@@ -173,6 +172,14 @@ fn well_behaved_noise_is_covered_as_claimed() {
             assert!((92.0..=98.0).contains(&outcome.coverage()), "{name}: {} % {outcome:?}", outcome.coverage());
             assert_eq!(outcome.open, 0, "{name}");
         }
+    }
+}
+
+/// Channels are taken to go together: the interval is wider where they do not.
+#[test]
+fn colours_apart_are_covered() {
+    for outcome in simulate(Noise::Gaussian(0.3), Scene::Room, 8, false) {
+        assert!(outcome.coverage() >= 95.0 && outcome.open == 0, "{outcome:?}");
     }
 }
 

@@ -3,6 +3,7 @@
 //! A pass is chosen by numbers of samples and by what they say, so that the same course can be taken again; time alone
 //! decides how far it is followed.
 
+use std::mem::replace;
 use std::time::{Duration, Instant};
 
 use smalti_core::film::{Film, ROUND};
@@ -29,7 +30,7 @@ const MARGIN: f64 = 1.03;
 pub(crate) enum Step {
     /// Every tile gets samples until it has so many.
     Until(u32),
-    /// Every tile gets so many more, each of which counts once.
+    /// Every tile gets so many more, as a round, each of which counts once.
     More(u32),
     /// Every tile gets its rounds of this pass of the stage.
     Visit(u32),
@@ -51,6 +52,8 @@ pub(crate) struct Course<'a> {
     /// Samples a pixel at which the error is judged next.
     look: u32,
     stage: Stage,
+    /// Whether less than a round came last: what would come then would be grouped otherwise than if it came at once.
+    ends: bool,
 }
 
 impl<'a> Course<'a> {
@@ -58,7 +61,7 @@ impl<'a> Course<'a> {
     pub fn new(goal: &'a Goal<'a>, spp: u32, photons: bool, (from, start): (u32, Instant)) -> Self {
         let marks = vec![(from, Duration::ZERO)];
         let look = FIRST_LOOK.max(from);
-        Self { goal, spp, photons, start, marks, emission: Duration::ZERO, look, stage: Stage::default() }
+        Self { goal, spp, photons, start, marks, emission: Duration::ZERO, look, stage: Stage::default(), ends: false }
     }
 
     /// Samples a pixel so far, in the mean.
@@ -69,6 +72,9 @@ impl<'a> Course<'a> {
     /// The next step; or why there is none.
     pub fn next(&mut self, film: &Film, records: &[Record]) -> Result<Step, Stopped> {
         let done = self.samples();
+        if film.tiles.is_empty() {
+            return Err(Stopped::Samples);
+        }
         if let Some(target) = &self.goal.target
             && done == self.look
             && self.is_reached(target, film)
@@ -84,7 +90,7 @@ impl<'a> Course<'a> {
         }
         let left = (self.spp - done).min(fitting);
         if left < ROUND {
-            return Ok(Step::More(left));
+            return if replace(&mut self.ends, true) { Err(Stopped::Time) } else { Ok(Step::More(left)) };
         }
         let pass = done / ROUND;
         if !self.stage.has(pass) {

@@ -250,7 +250,7 @@ fn units<'a>(
 ) -> Vec<Unit<'a>> {
     let samples = |index: usize, tile: &Tile| match step {
         Step::Until(until) => (until, None),
-        Step::More(more) => (tile.samples() + more, None),
+        Step::More(more) => (tile.samples() + more, Some(1.0)),
         Step::Visit(visit) => {
             let (rounds, weight) = course.rounds(index, visit);
             (tile.samples() + rounds * ROUND, Some(weight))

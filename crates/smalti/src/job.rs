@@ -279,9 +279,9 @@ mod tests {
     #[test]
     fn absurd_sizes_are_refused_with_a_number() {
         let sized = |width, height| Settings { width, height, ..Settings::default() };
-        assert_eq!(check_memory(&sized(100, 100), 0, Some(840_000)), Ok(()));
+        assert_eq!(check_memory(&sized(100, 100), 0, Some(1_080_000)), Ok(()));
         let message = check_memory(&sized(100_000, 100_000), 0, Some(16_000_000_000)).unwrap_err().message;
-        assert!(message.contains("840 GB") && message.contains("16 GB"), "{message}");
+        assert!(message.contains("1.1 TB") && message.contains("16 GB"), "{message}");
         assert!(check_memory(&sized(u32::MAX, u32::MAX), 0, None).is_err());
     }
 

@@ -65,8 +65,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_pixel_takes_84_bytes() {
-        assert_eq!(film_bytes(Rect { x: 0, y: 0, width: 10, height: 10 }), Some(8400));
+    fn a_pixel_takes_108_bytes() {
+        assert_eq!(film_bytes(Rect { x: 0, y: 0, width: 10, height: 10 }), Some(10_800));
         assert_eq!(film_bytes(Rect { x: 0, y: 0, width: u32::MAX, height: u32::MAX }), None);
     }
 

@@ -84,12 +84,12 @@ struct Cell<'a> {
 
 impl Cell<'_> {
     fn run(&self) -> Result<()> {
-        let truth = self.truth()?;
+        let (truth, noise) = self.truth()?;
         let mut outcomes = [Outcome::default(), Outcome::default()];
         for seed in 0..self.arguments.seeds {
             let film = self.film(self.integrator, seed)?;
             let stated = error_statement(&film).context("it takes 32 samples a pixel")?;
-            let truths = self.errors(&film, &truth);
+            let truths = self.errors(&film, &truth, &noise);
             outcomes[0].count(truths[0], relmse(&stated));
             outcomes[1].count(truths[1], relative_error(&stated));
         }
@@ -100,19 +100,26 @@ impl Cell<'_> {
         Ok(())
     }
 
-    /// The mean of renders with other seeds.
-    fn truth(&self) -> Result<Vec<[f64; 3]>> {
+    /// The mean of renders with other seeds, and the variance of that mean.
+    fn truth(&self) -> Result<(Vec<[f64; 3]>, Vec<[f64; 3]>)> {
         let unbiased = matches!(self.integrator, Integrator::Path | Integrator::Auto);
         let integrator = if unbiased { Integrator::Auto } else { self.integrator };
-        let mut sums = Vec::new();
+        let (mut sums, mut squares) = (Vec::new(), Vec::new());
+        let seeds = self.arguments.seeds as f64;
         for seed in self.arguments.seeds..2 * self.arguments.seeds {
             let image = pixels(&self.film(integrator, seed)?);
             sums.resize(image.len(), [0.0; 3]);
-            for (sum, pixel) in sums.iter_mut().zip(image) {
-                (0..3).for_each(|c| sum[c] += pixel[c] / self.arguments.seeds as f64);
+            squares.resize(image.len(), [0.0; 3]);
+            for ((sum, square), pixel) in sums.iter_mut().zip(&mut squares).zip(image) {
+                (0..3).for_each(|c| sum[c] += pixel[c] / seeds);
+                (0..3).for_each(|c| square[c] += pixel[c] * pixel[c] / seeds);
             }
         }
-        Ok(sums)
+        let variance = |(sum, square): (&[f64; 3], &[f64; 3])| {
+            std::array::from_fn(|c| (square[c] - sum[c] * sum[c]).max(0.0) / (seeds - 1.0))
+        };
+        let noise = sums.iter().zip(&squares).map(variance).collect();
+        Ok((sums, noise))
     }
 
     /// The film of a render: a kept one, or a new one.
@@ -138,20 +145,17 @@ impl Cell<'_> {
         Ok(render(&renderer, film, &pool, &Cancel::default(), None)?.film)
     }
 
-    /// True relmse and relative error. The truth has noise of its own, as much as one in so many seeds of an image of its
-    /// integrator.
-    fn errors(&self, film: &Film, truth: &[[f64; 3]]) -> [f64; 2] {
+    /// True relmse and relative error, freed of the noise that the truth has of its own.
+    fn errors(&self, film: &Film, truth: &[[f64; 3]], noise: &[[f64; 3]]) -> [f64; 2] {
         let count = (3 * truth.len()) as f64;
         let mean = truth.as_flattened().iter().sum::<f64>() / count;
         let image = pixels(film);
         let error = |floor: f64| {
-            let of_channel = |x: f64, r: f64| (x - r) * (x - r) / (r * r + floor);
-            let pairs = image.iter().zip(truth);
-            pairs.map(|(x, r)| (0..3).map(|c| of_channel(x[c], r[c])).sum::<f64>()).sum::<f64>() / count
+            let of_channel = |x: f64, r: f64, v: f64| ((x - r) * (x - r) - v) / (r * r + floor);
+            let pixels = image.iter().zip(truth).zip(noise);
+            pixels.map(|((x, r), v)| (0..3).map(|c| of_channel(x[c], r[c], v[c])).sum::<f64>()).sum::<f64>() / count
         };
-        let seeds = self.arguments.seeds as f64;
-        let own = if self.integrator == Integrator::Path { 1.0 } else { seeds / (seeds + 1.0) };
-        [own * error(0.01), (own * error(0.01 * mean * mean)).sqrt()]
+        [error(0.01), error(0.01 * mean * mean).max(0.0).sqrt()]
     }
 }
 

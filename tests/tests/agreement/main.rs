@@ -1,5 +1,6 @@
 //! Renderers that must agree: streams and the oracle, and streams with streams under other settings.
 
+mod adaptive;
 mod oracle;
 mod photons;
 mod primary;
