@@ -47,6 +47,10 @@ bless:
     SMALTI_BLESS=1 cargo test --package smalti-tests --test golden
     git diff --stat
 
+# Does the error that renders state of themselves hold the truth as often as it claims? (about an hour)
+coverage *FLAGS:
+    cargo run --release --quiet --package smalti-tests --bin coverage -- {{FLAGS}} scenes/cornell.toml scenes/furnace.toml scenes/blob.toml scenes/hexroom.toml scenes/hexroom-caustic.toml
+
 # Put each known mistake in and see that a test notices (about half an hour)
 mutants *NAMES:
     tests/mutants.sh {{NAMES}}

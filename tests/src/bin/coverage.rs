@@ -82,14 +82,21 @@ struct Cell<'a> {
     integrator: Integrator,
 }
 
+/// What images are compared with.
+struct Truth {
+    mean: Vec<[f64; 3]>,
+    /// Variance of that mean.
+    noise: Vec<[f64; 3]>,
+}
+
 impl Cell<'_> {
     fn run(&self) -> Result<()> {
-        let (truth, noise) = self.truth()?;
+        let truth = self.truth()?;
         let mut outcomes = [Outcome::default(), Outcome::default()];
         for seed in 0..self.arguments.seeds {
             let film = self.film(self.integrator, seed)?;
             let stated = error_statement(&film).context("it takes 32 samples a pixel")?;
-            let truths = self.errors(&film, &truth, &noise);
+            let truths = self.errors(&film, &truth);
             outcomes[0].count(truths[0], relmse(&stated));
             outcomes[1].count(truths[1], relative_error(&stated));
         }
@@ -100,8 +107,8 @@ impl Cell<'_> {
         Ok(())
     }
 
-    /// The mean of renders with other seeds, and the variance of that mean.
-    fn truth(&self) -> Result<(Vec<[f64; 3]>, Vec<[f64; 3]>)> {
+    /// The mean of renders with other seeds.
+    fn truth(&self) -> Result<Truth> {
         let unbiased = matches!(self.integrator, Integrator::Path | Integrator::Auto);
         let integrator = if unbiased { Integrator::Auto } else { self.integrator };
         let (mut sums, mut squares) = (Vec::new(), Vec::new());
@@ -119,7 +126,7 @@ impl Cell<'_> {
             std::array::from_fn(|c| (square[c] - sum[c] * sum[c]).max(0.0) / (seeds - 1.0))
         };
         let noise = sums.iter().zip(&squares).map(variance).collect();
-        Ok((sums, noise))
+        Ok(Truth { mean: sums, noise })
     }
 
     /// The film of a render: a kept one, or a new one.
@@ -146,13 +153,13 @@ impl Cell<'_> {
     }
 
     /// True relmse and relative error, freed of the noise that the truth has of its own.
-    fn errors(&self, film: &Film, truth: &[[f64; 3]], noise: &[[f64; 3]]) -> [f64; 2] {
-        let count = (3 * truth.len()) as f64;
-        let mean = truth.as_flattened().iter().sum::<f64>() / count;
+    fn errors(&self, film: &Film, truth: &Truth) -> [f64; 2] {
+        let count = (3 * truth.mean.len()) as f64;
+        let mean = truth.mean.as_flattened().iter().sum::<f64>() / count;
         let image = pixels(film);
         let error = |floor: f64| {
             let of_channel = |x: f64, r: f64, v: f64| ((x - r) * (x - r) - v) / (r * r + floor);
-            let pixels = image.iter().zip(truth).zip(noise);
+            let pixels = image.iter().zip(&truth.mean).zip(&truth.noise);
             pixels.map(|((x, r), v)| (0..3).map(|c| of_channel(x[c], r[c], v[c])).sum::<f64>()).sum::<f64>() / count
         };
         [error(0.01), error(0.01 * mean * mean).max(0.0).sqrt()]
