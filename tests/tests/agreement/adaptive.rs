@@ -61,7 +61,7 @@ fn adaptive_samples_are_counted_for_what_they_are() {
     let mut inside = 0;
     for film in renders(&world, &settings(Integrator::Path, true, 256)) {
         let (least, most) = film.samples();
-        assert!(least >= 64 && least < 256 && most > 256, "{least} to {most}");
+        assert!((64..256).contains(&least) && most > 256, "{least} to {most}");
         let stated = error_statement(&film).unwrap();
         let found = smalti_measure::compare(&film.develop(), &truth, 0).unwrap().relative_error.unwrap();
         let (low, high) = (stated.relative_error_low, stated.relative_error_high.unwrap());
