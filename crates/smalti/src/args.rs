@@ -76,6 +76,9 @@ pub struct RenderArgs {
     pub photon_map: Option<PathBuf>,
     #[command(flatten)]
     pub budget: BudgetArgs,
+    /// Write the standard error of each pixel and channel as an image too: .exr, .pfm, .hdr or .png
+    #[arg(long, value_name = "FILE")]
+    pub standard_error: Option<PathBuf>,
     /// Exit with 1 if a sample was not finite
     #[arg(long)]
     pub strict: bool,

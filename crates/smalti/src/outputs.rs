@@ -24,6 +24,16 @@ pub fn checked(typed: &[PathBuf], scene: &Path, ending: &str) -> Result<Vec<Path
     Ok(outputs)
 }
 
+/// Another file beside these, possible as far as can be told and none of them.
+pub fn check_beside(outputs: &[PathBuf], other: Option<&Path>) -> Result<(), Failure> {
+    let Some(path) = other else { return Ok(()) };
+    smalti_image::check_destination(path).map_err(Failure::user)?;
+    match outputs.iter().any(|output| output == path) {
+        true => Err(Failure::user(format!("{} is named twice", path.display()))),
+        false => Ok(()),
+    }
+}
+
 /// Writes every file that can be written and adds its name to `written`; an error names the others.
 pub fn write_all(
     outputs: &[PathBuf],

@@ -270,6 +270,12 @@ impl Film {
         Some(estimates)
     }
 
+    /// The standard error of each pixel's channels, or `None` while some tile has fewer than two complete rounds.
+    pub fn standard_errors(&self) -> Option<Image> {
+        let pixels = self.estimates()?.iter().map(|estimate| estimate.standard_error).collect();
+        Some(Image { width: self.area.width, height: self.area.height, pixels })
+    }
+
     /// What photon radii shift each pixel by, in image order; `None` where no photons are asked, and before every tile
     /// has samples of two rounds.
     pub fn shifts(&self) -> Option<Vec<Shifted>> {

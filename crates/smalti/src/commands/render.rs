@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use rayon::ThreadPool;
-use smalti_core::film::Film;
+use smalti_core::film::{Film, Image};
 use smalti_core::render::Renderer;
 use smalti_scheduler::{Goal, Outcome, Shelf, Watch, render_to};
 
@@ -25,6 +25,7 @@ use crate::{error_statement, memory, outputs, photon_map, provenance};
 pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Failure> {
     let messages = Messages { json: args.run.progress == ProgressArg::Json };
     let outputs = outputs::checked(&args.outputs, &args.scene, ".png")?;
+    outputs::check_beside(&outputs, args.standard_error.as_deref())?;
     let mut job = Job::load_downsampled(&args.scene, &args.image, args.downsample, args.run.work.simd.simd)?;
     let photon_map = args.photon_map.as_deref().map(|path| open_photon_map(path, &mut job)).transpose()?;
     job.notes.iter().for_each(|note| messages.note(note));
@@ -45,6 +46,7 @@ pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Fa
     }
     let kept = photon_map.map_or(Ok(()), PhotonMap::finish);
     let developed = pool.install(|| develop(&outcome.film, job.downsample));
+    let errors = args.standard_error.as_deref().map(|path| (path, standard_errors(&outcome.film, &job)));
     // Encoding needs memory too: the film, six times as large as the image, makes room.
     outcome.film.tiles = Vec::new();
     if let Some(signal) = interrupt.signal().filter(|_| outcome.interrupted) {
@@ -54,6 +56,7 @@ pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Fa
         let mut summary = summary(&job, work, &outcome, &developed);
         summary.target_reached = budget.is_reached(outcome.stopped);
         let written = write(&outputs, &developed, &mut summary, job.exposure(args.exposure));
+        let written = written.and(errors.map_or(Ok(()), |errors| write_errors(errors, &mut summary, messages)));
         summary.run.wall_seconds = start.elapsed().as_secs_f64();
         tell(args, &summary, messages)?;
         written.and(kept)?;
@@ -131,6 +134,28 @@ fn write(outputs: &[PathBuf], developed: &Developed, summary: &mut Summary, expo
     summary.run.write_seconds = start.elapsed().as_secs_f64();
     summary.peak_bytes = memory::peak_bytes();
     written
+}
+
+/// The standard error of each pixel; `None` with too few samples.
+fn standard_errors(film: &Film, job: &Job) -> Option<Image> {
+    film.downsampled(job.downsample).standard_errors()
+}
+
+/// Writes standard errors, if there are any.
+fn write_errors(
+    (path, errors): (&Path, Option<Image>),
+    summary: &mut Summary,
+    messages: Messages,
+) -> Result<(), Failure> {
+    let Some(errors) = errors else {
+        let needed = error_statement::SAMPLES_NEEDED;
+        messages.warning(&format!("standard errors take {needed} samples a pixel: {} is not written", path.display()));
+        return Ok(());
+    };
+    let provenance = provenance::of(summary);
+    outputs::write_all(&[path.into()], &mut summary.outputs, |path| {
+        smalti_image::write(path, &errors, &provenance, 0.0)
+    })
 }
 
 /// Tells the user what came of it.

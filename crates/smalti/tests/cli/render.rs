@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::room::{SCENE, command, folder, json, run, stderr, stdout};
+use crate::room::{SCENE, command, folder, json, refuses, run, stderr, stdout};
 
 #[test]
 fn the_default_output_lies_here_under_the_scenes_name() {
@@ -122,6 +122,23 @@ fn a_downsampled_image_is_the_mean_of_the_larger_one() {
     assert_eq!((&small["width"], &small["height"], &small["downsample"]), (&24.into(), &16.into(), &2.into()));
     let line = small["reproduce"].as_str().unwrap().strip_prefix("smalti ").unwrap().to_owned();
     assert_eq!(small["hash"], json(&folder, &format!("{line} --json -q"))["hash"]);
+}
+
+#[test]
+fn standard_errors_are_an_image_of_their_own() {
+    let folder = folder();
+    let told = json(&folder, "render room.toml --spp 64 -o image.pfm --standard-error error.pfm --json -q");
+    assert_eq!(told["outputs"], serde_json::json!(["image.pfm", "error.pfm"]));
+    let (image, errors) = (pfm(&folder, "image.pfm"), pfm(&folder, "error.pfm"));
+    // The mean square error, taken relative to the image, is about what is stated.
+    let square = |(x, error): (&f32, &f32)| f64::from(error * error) / (f64::from(x * x) + 0.01);
+    let pairs = image.as_flattened().iter().zip(errors.as_flattened());
+    let relmse = pairs.map(square).sum::<f64>() / (3 * image.len()) as f64;
+    let stated = told["error"]["relmse"].as_f64().unwrap();
+    assert!((0.5..1.5).contains(&(relmse / stated)), "{relmse} {stated}");
+    let few = run(&folder, "render room.toml --spp 8 -o image.pfm --standard-error none.pfm");
+    assert!(few.status.success() && stderr(&few).contains("none.pfm is not written"), "{}", stderr(&few));
+    refuses("render room.toml -o a.pfm --standard-error a.pfm", &["twice"]);
 }
 
 #[test]
