@@ -123,10 +123,10 @@ Examples:
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub struct BudgetArgs {
     /// Use this time, from the start of the process to its end, for as many samples as it gives; --spp is the most then
-    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, allow_negative_numbers = true)]
     pub time: Option<f64>,
     /// Stop when the relative error is at most this, with 95 % confidence: 1% or 0.01; --spp is the most samples then
-    #[arg(long, value_name = "SHARE", value_parser = parse_share)]
+    #[arg(long, value_name = "SHARE", value_parser = parse_share, allow_negative_numbers = true)]
     pub target_error: Option<f64>,
 }
 

@@ -69,7 +69,8 @@ fn radius(bias: &BiasStatement) -> String {
     format!("bias by photon radii {likely} (at most {most}); brightness {:+.3} %", 100.0 * brightness)
 }
 
-fn percent(share: f64) -> String {
+/// A share in percent.
+pub fn percent(share: f64) -> String {
     format!("{:.3} %", 100.0 * share)
 }
 

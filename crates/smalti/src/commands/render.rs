@@ -9,7 +9,7 @@ use smalti_core::render::Renderer;
 use smalti_scheduler::{Goal, Outcome, Shelf, Watch, render_to};
 
 use crate::args::{ProgressArg, RenderArgs, When};
-use crate::budget::Budget;
+use crate::budget::{self, Budget};
 use crate::describe::describe;
 use crate::exit::{Failure, Status};
 use crate::frontend::{self, Mode, Title};
@@ -54,11 +54,14 @@ pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Fa
     }
     if developed.samples.1 > 0 {
         let mut summary = summary(&job, work, &outcome, &developed);
-        summary.target_reached = budget.is_reached(outcome.stopped);
+        let at_most = budget::at_most(developed.error.as_ref(), developed.bias.as_ref());
+        summary.target_reached = budget.is_reached(outcome.stopped, at_most);
         let written = write(&outputs, &developed, &mut summary, job.exposure(args.exposure));
         let written = written.and(errors.map_or(Ok(()), |errors| write_errors(errors, &mut summary, messages)));
         summary.run.wall_seconds = start.elapsed().as_secs_f64();
         tell(args, &summary, messages)?;
+        let shortfall = budget.shortfall(outcome.stopped, developed.error.as_ref(), at_most);
+        shortfall.iter().for_each(|text| messages.warning(text));
         written.and(kept)?;
     }
     Ok(status(args.strict, &outcome, &interrupt))

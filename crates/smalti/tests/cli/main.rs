@@ -1,5 +1,6 @@
 //! The program as it is typed: help, mistakes and their messages, exit codes, files, JSON.
 
+mod budget;
 mod images;
 mod mistakes;
 mod photon_map;
