@@ -10,7 +10,8 @@ use smalti_core::film::{Film, ROUND};
 
 use crate::account::Record;
 use crate::allot::{AHEAD, Need, Stage};
-use crate::goal::{Goal, Stopped, Target};
+use crate::goal::{Goal, Stopped};
+use crate::look::Looks;
 use crate::pass;
 
 /// Samples a pixel at most where only time or an error ends a render.
@@ -18,12 +19,6 @@ pub(crate) const MOST_SAMPLES: u32 = 1 << 24;
 
 /// With a deadline a pass takes at most this part of the time that there is.
 const PART: f64 = 0.02;
-
-/// Samples a pixel at which the error is judged first.
-const FIRST_LOOK: u32 = 4 * ROUND;
-
-/// The next look is where the error should be this much below the target, in squares.
-const MARGIN: f64 = 1.03;
 
 /// What is to be done next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,8 +44,8 @@ pub(crate) struct Course<'a> {
     marks: Vec<(u32, Duration)>,
     /// Time for the photons of a round.
     emission: Duration,
-    /// Samples a pixel at which the error is judged next.
-    look: u32,
+    /// When the error is judged.
+    looks: Looks,
     stage: Stage,
     /// Whether less than a round came last: what would come then would be grouped otherwise than if it came at once.
     ends: bool,
@@ -60,8 +55,8 @@ impl<'a> Course<'a> {
     /// A render to `goal` of at most `spp` samples a pixel, which begins now with `from`.
     pub fn new(goal: &'a Goal<'a>, spp: u32, photons: bool, (from, start): (u32, Instant)) -> Self {
         let marks = vec![(from, Duration::ZERO)];
-        let look = FIRST_LOOK.max(from);
-        Self { goal, spp, photons, start, marks, emission: Duration::ZERO, look, stage: Stage::default(), ends: false }
+        let looks = Looks::new(from);
+        Self { goal, spp, photons, start, marks, emission: Duration::ZERO, looks, stage: Stage::default(), ends: false }
     }
 
     /// Samples a pixel so far, in the mean.
@@ -76,13 +71,13 @@ impl<'a> Course<'a> {
             return Err(Stopped::Samples);
         }
         if let Some(target) = &self.goal.target
-            && done == self.look
-            && self.is_reached(target, film)
+            && done == self.looks.next()
+            && self.looks.is_reached(target, film)
         {
             return Err(Stopped::Error);
         }
-        let longest =
-            pass::next(done, self.spp.min(self.goal.target.as_ref().map_or(u32::MAX, |_| self.look)), self.photons);
+        let look = self.goal.target.as_ref().map_or(u32::MAX, |_| self.looks.next());
+        let longest = pass::next(done, self.spp.min(look), self.photons);
         let longest = longest.ok_or(Stopped::Samples)? - done;
         let fitting = self.fitting(done)?;
         if self.goal.noise.is_none() || done < AHEAD * ROUND {
@@ -116,27 +111,19 @@ impl<'a> Course<'a> {
         self.stage.rounds(tile, pass)
     }
 
-    /// Samples a pixel that it will come to, as far as can be foreseen.
-    pub fn foreseen(&self) -> u32 {
+    /// Samples a pixel that it will come to; `None` while nothing can be foreseen.
+    pub fn foreseen(&self) -> Option<u32> {
         let done = self.samples();
-        let look = self.goal.target.as_ref().map_or(u32::MAX, |_| self.look.max(done));
-        let in_time = self.left().zip(self.seconds_a_sample()).map_or(u32::MAX, |(left, each)| {
-            let emission = self.emission.as_secs_f64() / f64::from(ROUND);
-            done.saturating_add((left / (each + emission)) as u32)
-        });
-        self.spp.min(look).min(in_time)
+        let most = (self.spp < MOST_SAMPLES).then_some(self.spp);
+        let wanted = self.looks.wanted().map(|wanted| wanted.max(done));
+        [most, wanted, self.in_time(done)].into_iter().flatten().min()
     }
 
-    /// Asks for the error; if it is too large, says when to ask again.
-    fn is_reached(&mut self, target: &Target, film: &Film) -> bool {
-        let bound = (target.at_most)(film);
-        if bound.is_some_and(|bound| bound <= target.error) {
-            return true;
-        }
-        let factor = bound.map_or(1.5, |bound| MARGIN * (bound / target.error) * (bound / target.error));
-        let next = f64::from(self.look) * factor.clamp(1.1, 2.0);
-        self.look = (next.min(f64::from(MOST_SAMPLES)) as u32).next_multiple_of(ROUND);
-        false
+    /// Samples a pixel when the time is up; `None` without a deadline, and before the first sample.
+    fn in_time(&self, done: u32) -> Option<u32> {
+        let emission = self.emission.as_secs_f64() / f64::from(ROUND);
+        let each = self.seconds_a_sample()? + emission;
+        Some(done.saturating_add((self.left()? / each) as u32))
     }
 
     /// Samples a pixel that there is time for, at most [`PART`] of all the time, at least 1.
@@ -210,32 +197,11 @@ mod tests {
         assert_eq!(ends(&mut course), (vec![1, 2, 4, 8, 16, 32, 64, 96, 100], Stopped::Samples));
     }
 
-    /// An error of 8 % at 64 samples that falls as it should, to 1 %.
-    #[test]
-    fn an_error_is_reached_after_few_looks() {
-        let looks = std::sync::atomic::AtomicU32::new(0);
-        let samples = std::sync::atomic::AtomicU32::new(0);
-        let at_most = |_: &Film| {
-            looks.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-            Some(0.08 * (64.0 / f64::from(samples.load(std::sync::atomic::Ordering::Relaxed))).sqrt())
-        };
-        let goal = Goal { target: Some(Target { error: 0.01, at_most: Box::new(at_most) }), ..Goal::default() };
-        let mut course = Course::new(&goal, MOST_SAMPLES, false, (0, Instant::now()));
-        loop {
-            samples.store(course.samples(), std::sync::atomic::Ordering::Relaxed);
-            match course.next(&film(), &[]) {
-                Ok(step) => course.note(step, Duration::from_millis(1), None),
-                Err(why) => break assert_eq!(why, Stopped::Error),
-            }
-        }
-        assert!((4096..4400).contains(&course.samples()), "{}", course.samples());
-        assert!(looks.load(std::sync::atomic::Ordering::Relaxed) <= 8);
-    }
-
     #[test]
     fn a_deadline_that_is_past_stops_after_one_sample() {
         let goal = Goal { deadline: Some(Instant::now()), ..Goal::default() };
         let mut course = Course::new(&goal, MOST_SAMPLES, false, (0, Instant::now()));
+        assert_eq!(course.foreseen(), None);
         assert_eq!(ends(&mut course), (vec![1], Stopped::Time));
     }
 
@@ -252,6 +218,6 @@ mod tests {
             assert!(until - before <= 20);
             course.note(step, Duration::from_secs((until - before).into()), None);
         }
-        assert!((900..=1300).contains(&course.foreseen()), "{}", course.foreseen());
+        assert!(course.foreseen().is_some_and(|foreseen| (900..=1300).contains(&foreseen)), "{:?}", course.foreseen());
     }
 }

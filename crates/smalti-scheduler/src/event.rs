@@ -22,10 +22,10 @@ pub enum Event {
         tiles: Vec<Rect>,
         /// Samples a pixel that the film had, in its least sampled tile.
         from: u32,
-        /// Samples a pixel when it is done, as far as can be foreseen.
-        until: u32,
-        /// Samples (camera paths) to do, over all pixels.
-        samples: u64,
+        /// Samples a pixel when it is done; `None` where that cannot be foreseen yet.
+        until: Option<u32>,
+        /// Samples (camera paths) to do, over all pixels; likewise.
+        samples: Option<u64>,
         /// What each worker does at the moment.
         progress: Arc<Progress>,
     },
@@ -73,8 +73,8 @@ pub enum Event {
         pass: u32,
         /// Samples that every pixel has now, in the mean.
         samples: u32,
-        /// Samples a pixel that it will come to, as far as can be foreseen.
-        foreseen: u32,
+        /// Samples a pixel that it will come to; `None` where that cannot be foreseen yet.
+        foreseen: Option<u32>,
         /// Time since the render began.
         elapsed: Duration,
         /// The watcher's own judgement of the error, where it made one.

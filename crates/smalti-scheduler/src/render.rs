@@ -130,7 +130,9 @@ fn perform<W: Send>(
     let mut records = vec![Record::default(); film.tiles.len()];
     let progress = Arc::new(Progress::new(crew.len(), Instant::now()));
     let audience = Audience { progress: &progress, watch: watch.as_ref() };
-    let mut course = Course::new(job.goal, job.spp, job.emit.is_some(), (film.samples().0, progress.start()));
+    // Where there is no tile, there is nothing to do.
+    let from = if film.tiles.is_empty() { job.spp } else { film.samples().0 };
+    let mut course = Course::new(job.goal, job.spp, job.emit.is_some(), (from, progress.start()));
     audience.tell(|| started(&film, course.foreseen(), &progress));
     let (passes, photons, stopped) = run_passes(job, &mut film, &mut records, (&crew, &mut course), &audience)?;
     let elapsed = [progress.start().elapsed(), photons.elapsed];
@@ -268,22 +270,22 @@ fn units<'a>(
 
 /// The error as the watcher judges it: where the samples have doubled since the last time, as each time costs the same,
 /// and not at the end, where the error is stated from the whole film anyway.
-fn judge(watch: Option<&Watch>, film: &Film, samples: u32, foreseen: u32, judged: &mut u32) -> Option<f64> {
-    if samples < 2 * *judged || samples >= foreseen {
+fn judge(watch: Option<&Watch>, film: &Film, samples: u32, foreseen: Option<u32>, judged: &mut u32) -> Option<f64> {
+    if samples < 2 * *judged || foreseen.is_some_and(|foreseen| samples >= foreseen) {
         return None;
     }
     *judged = samples;
     watch?.error.as_ref()?(film)
 }
 
-fn started(film: &Film, spp: u32, progress: &Arc<Progress>) -> Event {
-    let missing = |tile: &Tile| tile.area.pixels() as u64 * u64::from(spp.saturating_sub(tile.samples()));
+fn started(film: &Film, until: Option<u32>, progress: &Arc<Progress>) -> Event {
+    let missing = |tile: &Tile, until: u32| tile.area.pixels() as u64 * u64::from(until.saturating_sub(tile.samples()));
     Event::Started {
         area: film.area,
         tiles: film.tiles.iter().map(|tile| tile.area).collect(),
         from: film.samples().0,
-        until: spp,
-        samples: film.tiles.iter().map(missing).sum(),
+        until,
+        samples: until.map(|until| film.tiles.iter().map(|tile| missing(tile, until)).sum()),
         progress: progress.clone(),
     }
 }
@@ -406,7 +408,9 @@ mod tests {
         let (sender, events) = unbounded();
         run(5, Film::new(AREA, 8), 3, Some(Watch::new(sender)), &fake).unwrap();
         let facts = facts(&events);
-        assert!(matches!(&facts[0], Event::Started { tiles, until: 5, samples: 1785, .. } if tiles.len() == 9));
+        assert!(
+            matches!(&facts[0], Event::Started { tiles, until: Some(5), samples: Some(1785), .. } if tiles.len() == 9)
+        );
         assert!(matches!(facts.last(), Some(Event::Finished { interrupted: false, .. })));
         let (mut tiles, mut ends) = (0, Vec::new());
         for fact in &facts {

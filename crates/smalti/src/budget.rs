@@ -11,6 +11,7 @@ use smalti_scheduler::{ADAPTIVE_TILE, Goal, Stopped, Target};
 use crate::args::BudgetArgs;
 use crate::describe::percent;
 use crate::error_statement::{self, SAMPLES_NEEDED};
+use crate::frontend;
 
 /// What a render may take, and what is wanted of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -41,6 +42,12 @@ impl Budget {
     /// Whether time or error end the render.
     pub fn is_open(&self) -> bool {
         self.time.is_some() || self.error.is_some()
+    }
+
+    /// What a display says of the end of a render of `settings`.
+    pub fn shown(&self, settings: &Settings) -> frontend::Goal {
+        let spp = if self.is_open() { self.spp } else { Some(settings.spp) };
+        frontend::Goal { spp, time: self.time, error: self.error }
     }
 
     /// Samples a pixel at most.

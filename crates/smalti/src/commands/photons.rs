@@ -36,7 +36,7 @@ pub fn run(args: &PhotonsArgs, colour: When, start: Instant) -> Result<Status, F
     let mut outcome = perform(&renderer, &pool, &interrupt, work, mode, title(args, &request, work))?;
     let samples = outcome.film.samples();
     if let Some(signal) = interrupt.signal().filter(|_| outcome.interrupted) {
-        messages.warning(&render::interrupted(signal, samples, request.job.settings.spp));
+        messages.warning(&render::interrupted(signal, samples, Some(request.job.settings.spp)));
     }
     if samples.1 > 0 {
         let picture = develop(outcome.film.develop(), request.colour);

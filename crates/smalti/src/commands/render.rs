@@ -40,7 +40,8 @@ pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Fa
     let goal = budget.goal(&job.settings, job.downsample, &pool, start);
     let workers =
         Workers { pool: &pool, interrupt: &interrupt, photon_map: photon_map.as_ref(), downsample: job.downsample };
-    let mut outcome = perform(&goal, (&renderer, film), &workers, mode, title(&job, work, args.exposure))?;
+    let title = Title { goal: budget.shown(&job.settings), ..title(&job, work, args.exposure) };
+    let mut outcome = perform(&goal, (&renderer, film), &workers, mode, title)?;
     if budget.is_open() {
         job.settings.spp = outcome.mean_samples;
     }
@@ -50,7 +51,7 @@ pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Fa
     // Encoding needs memory too: the film, six times as large as the image, makes room.
     outcome.film.tiles = Vec::new();
     if let Some(signal) = interrupt.signal().filter(|_| outcome.interrupted) {
-        messages.warning(&interrupted(signal, developed.samples, job.settings.spp));
+        messages.warning(&interrupted(signal, developed.samples, budget.shown(&job.settings).spp));
     }
     if developed.samples.1 > 0 {
         let mut summary = summary(&job, work, &outcome, &developed);
@@ -73,7 +74,7 @@ pub(super) fn title(job: &Job, work: Work, exposure: Option<f64>) -> Title {
     Title {
         scene: job.path.display().to_string(),
         size: (area.width, area.height),
-        spp: job.settings.spp,
+        goal: frontend::Goal::samples(job.settings.spp),
         integrator: job.settings.integrator.name(),
         threads: work.threads,
         level: job.level.name(),
@@ -117,13 +118,14 @@ fn perform(
     outcome.map_err(Failure::bug)
 }
 
-/// What became of a render that was stopped by a signal.
-pub(super) fn interrupted(signal: i32, (least, most): (u32, u32), spp: u32) -> String {
+/// What became of a render that was stopped by a signal; `spp` samples a pixel were to come.
+pub(super) fn interrupted(signal: i32, (least, most): (u32, u32), spp: Option<u32>) -> String {
     let by = interrupt::name(signal);
-    match (least, most) {
-        (_, 0) => format!("interrupted by {by} before the first sample: nothing is written"),
-        (a, b) if a == b => format!("interrupted by {by}: the picture so far is kept, {a} of {spp} samples a pixel"),
-        _ => format!("interrupted by {by}: the picture so far is kept, {least} to {most} of {spp} samples a pixel"),
+    let samples = if least == most { least.to_string() } else { format!("{least} to {most}") };
+    let of = spp.map_or(String::new(), |spp| format!(" of {spp}"));
+    match most {
+        0 => format!("interrupted by {by} before the first sample: nothing is written"),
+        _ => format!("interrupted by {by}: the picture so far is kept, {samples}{of} samples a pixel"),
     }
 }
 
@@ -183,8 +185,9 @@ mod tests {
 
     #[test]
     fn interruptions_say_how_far_it_came() {
-        assert!(interrupted(2, (0, 0), 64).contains("SIGINT before the first sample"));
-        assert!(interrupted(15, (4, 4), 64).contains("4 of 64"));
-        assert!(interrupted(15, (4, 8), 64).contains("4 to 8 of 64"));
+        assert!(interrupted(2, (0, 0), Some(64)).contains("SIGINT before the first sample"));
+        assert!(interrupted(15, (4, 4), Some(64)).contains("4 of 64"));
+        assert!(interrupted(15, (4, 8), Some(64)).contains("4 to 8 of 64"));
+        assert!(interrupted(15, (4, 8), None).contains("kept, 4 to 8 samples"));
     }
 }

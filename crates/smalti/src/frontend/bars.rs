@@ -10,6 +10,9 @@ use super::tally::Tally;
 use super::terminal::Palette;
 use super::{Title, View};
 
+/// The length of a bar: what is foreseen changes, its bar does not.
+const WHOLE: u64 = 1 << 16;
+
 /// Frames on a surface.
 pub struct Bars<S> {
     title: Title,
@@ -61,7 +64,7 @@ impl<S: Surface> Bars<S> {
     }
 
     /// The bar of a frame of that shape. Where the last frame had another, it is wiped and a new bar is begun.
-    fn bar(&mut self, shape: Shape, total: u64) -> Drawn {
+    fn bar(&mut self, shape: Shape) -> Drawn {
         match self.drawn.take() {
             Some(drawn) if drawn.shape == shape => return drawn,
             Some(drawn) => self.wipe(&drawn, shape.size),
@@ -71,7 +74,7 @@ impl<S: Surface> Bars<S> {
         let place = MultiProgress::with_draw_target(target);
         // Lines are overwritten, not cleared first: a terminal without synchronised output does not flicker.
         place.set_move_cursor(true);
-        let bar = place.add(ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::hidden()));
+        let bar = place.add(ProgressBar::with_draw_target(Some(WHOLE), ProgressDrawTarget::hidden()));
         Drawn { place, bar, shape }
     }
 
@@ -88,9 +91,9 @@ impl<S: Surface> Bars<S> {
         let Frame { above, text, below } = frame::live(&self.title, tally, self.picture(), self.look, size);
         let style = style(!above.is_empty(), below, self.look.palette);
         let lines = above.len() + if below { 2 } else { 1 };
-        let drawn = self.bar(Shape { size, lines }, tally.total);
+        let drawn = self.bar(Shape { size, lines });
         let bar = drawn.bar.clone().with_style(style).with_prefix(above.join("\n")).with_message(text);
-        bar.with_position(tally.done).tick();
+        bar.with_position(part(tally)).tick();
         self.drawn = Some(drawn);
     }
 
@@ -132,6 +135,13 @@ impl<S: Surface> View for Bars<S> {
 /// its end and lets the terminal break it, so to a terminal that breaks lines anew the whole frame is one long line.
 fn broken_anew(lines: usize, from: usize, to: usize) -> usize {
     (lines * from).div_ceil(to)
+}
+
+/// How much of the bar is done; nothing where the end cannot be foreseen.
+fn part(tally: &Tally) -> u64 {
+    let part =
+        |total: u64| (u128::from(tally.done) * u128::from(WHOLE)).checked_div(total.into()).map(|part| part as u64);
+    tally.total.map_or(0, |total| part(total).unwrap_or(WHOLE))
 }
 
 /// Where text and bar stand.

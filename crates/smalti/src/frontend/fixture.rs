@@ -8,8 +8,8 @@ use smalti_core::render::{RayCounts, Rejected};
 use smalti_core::settings::Rect;
 use smalti_scheduler::{Event, Progress, Timing};
 
-use super::Title;
 use super::tally::Tally;
+use super::{Goal, Title};
 
 /// The part of the image that is rendered.
 pub const AREA: Rect = Rect { x: 10, y: 20, width: 64, height: 64 };
@@ -19,7 +19,7 @@ pub fn title() -> Title {
     Title {
         scene: "scenes/a room with a rather long name.toml".into(),
         size: (64, 64),
-        spp: 64,
+        goal: Goal::samples(64),
         integrator: "path",
         threads: 2,
         level: "avx2",
@@ -45,13 +45,16 @@ pub fn first_pass(workers: usize) -> Vec<Event> {
     };
     let mut facts: Vec<_> = tiles.iter().enumerate().map(finished).collect();
     let progress = Arc::new(Progress::new(workers, Instant::now()));
-    facts.insert(0, Event::Started { area: AREA, tiles, from: 0, until: 64, samples: 64 * 64 * 64, progress });
+    facts.insert(
+        0,
+        Event::Started { area: AREA, tiles, from: 0, until: Some(64), samples: Some(64 * 64 * 64), progress },
+    );
     let rejected = Rejected { pixel: (12, 30), sample: 0 };
     facts.push(Event::SampleRejected(rejected));
     facts.push(Event::PassFinished {
         pass: 0,
         samples: 1,
-        foreseen: 64,
+        foreseen: Some(64),
         elapsed: Duration::from_millis(80),
         error: Some(0.0213),
     });
@@ -76,7 +79,7 @@ pub fn half_way(workers: usize) -> Tally {
         }
         tally.hear(&fact);
     }
-    tally.done = tally.total / 2;
+    tally.done = tally.total.unwrap() / 2;
     for second in 0..=20 {
         tally.pace.note(Duration::from_secs(second), tally.done * second / 20);
     }

@@ -41,7 +41,7 @@ pub fn live(title: &Title, tally: &Tally, picture: Option<&Picture>, look: Look,
     let mut above: Vec<String> = heading.into_iter().collect();
     above.extend(painted(tally, picture, look, (columns, room - workers.len())));
     above.extend(workers);
-    let text = status(tally, if columns < WIDE { columns } else { columns - BAR - 1 });
+    let text = status(title, tally, if columns < WIDE { columns } else { columns - BAR - 1 });
     Frame { above, text, below }
 }
 
@@ -64,10 +64,11 @@ pub fn last(
 
 /// What is rendered and on what.
 pub fn heading(title: &Title) -> String {
-    let Title { scene, size: (width, height), spp, integrator, threads, level, .. } = title;
+    let Title { scene, size: (width, height), goal, integrator, threads, level, .. } = title;
+    let goal = goal.in_words();
     let scene: String = scene.chars().map(|c| if c.is_control() { '?' } else { c }).collect();
     let threads = if *threads == 1 { "1 thread".to_owned() } else { format!("{threads} threads") };
-    format!("{scene}  {width}x{height}  {spp} spp  {integrator}  {threads}  {level}")
+    format!("{scene}  {width}x{height}  {goal}  {integrator}  {threads}  {level}")
 }
 
 /// What became of the photons of a round.
@@ -117,11 +118,12 @@ fn line(index: usize, worker: &Worker, tally: &Tally, columns: usize) -> String 
 }
 
 /// How far it is and how long it takes, as much of it as fits: the last fields in the list of ranks go first.
-pub fn status(tally: &Tally, columns: usize) -> String {
-    let remaining = tally.pace.remaining(tally.total);
+pub fn status(title: &Title, tally: &Tally, columns: usize) -> String {
+    let remaining = title.goal.left(tally, title.setup);
+    let (samples, until) = (tally.samples, tally.until);
     let fields = [
-        (0, Some(numbers::done(tally.done, tally.total))),
-        (5, Some(format!("{} of {} spp", tally.samples, tally.until))),
+        (0, tally.total.map(|total| numbers::done(tally.done, total))),
+        (5, Some(until.map_or(format!("{samples} spp"), |until| format!("{samples} of {until} spp")))),
         (2, Some(numbers::rays(tally.rays_per_second()))),
         (4, tally.error.map(|(error, spp)| format!("error {} at {spp} spp", numbers::share(error)))),
         (3, (tally.rejected > 0).then(|| format!("{} not finite", numbers::count(tally.rejected)))),
@@ -182,7 +184,7 @@ mod tests {
     #[test]
     fn narrow_terminals_lose_the_least_important_first() {
         let tally = fixture::half_way(2);
-        let texts = [60, 50, 40, 28, 12, 4].map(|columns| status(&tally, columns));
+        let texts = [60, 50, 40, 28, 12, 4].map(|columns| status(&fixture::title(), &tally, columns));
         let expected = [
             "50 %  0.08 Mrays/s  error 2.1 % at 1 spp  20 s left",
             "50 %  0.08 Mrays/s  20 s left",

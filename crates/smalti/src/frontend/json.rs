@@ -2,14 +2,15 @@
 //!
 //! Every object has `event`; times are in seconds, places are `[x, y, width, height]` in pixels of the whole image:
 //! - `started`: `scene, area, spp, integrator, threads, simd, setup_seconds, tiles` (their number)`, from_spp` (what
-//!   every pixel had before)`, samples` (to do, over all pixels)
+//!   every pixel had before)`, samples` (to do, over all pixels); `spp` and `samples` are null where they cannot be
+//!   foreseen yet: before the first sample of a render until a time, before the first judgement of one until an error
 //! - `photons_emitted`: `round` (of samples, from 0)`, photons`
 //! - `photons_stored`: `round, emitted, stored, nonfinite, bytes` (of the maps)`, seconds` (to emit, trace and build)
 //! - `tile_finished`: `tile` (from 0)`, area, pass` (from 0)`, worker` (from 0)`, seconds, samples` (added, over all
 //!   pixels)`, rays { camera, scattered, shadow }, nonfinite` (samples that were not finite)
 //! - `sample_rejected`: `pixel [x, y], sample`; a sample that was not finite, the first ones of each tile
-//! - `pass_finished`: `pass, spp` (that every pixel has now)`, seconds` (since the render began)`, relative_error` (or
-//!   null)
+//! - `pass_finished`: `pass, spp` (that every pixel has now, in the mean)`, seconds` (since the render began)`,
+//!   relative_error` (or null)`, foreseen_spp` (that it will come to, or null where that cannot be foreseen yet)
 //! - `finished`: `interrupted, seconds, passes, idle` (share of each worker)`, tile_seconds { min, median, max },
 //!   slowest_tile` (both null without tiles)
 
@@ -134,7 +135,7 @@ mod tests {
             (&json!(1), &json!(0.01), &json!(49_744))
         );
         assert_eq!(lines[17], json!({ "event": "sample_rejected", "pixel": [12, 30], "sample": 0 }));
-        assert_eq!(lines[18]["relative_error"], json!(0.0213));
+        assert_eq!((&lines[18]["relative_error"], &lines[18]["foreseen_spp"]), (&json!(0.0213), &json!(64)));
         assert_eq!((&lines[19]["interrupted"], &lines[19]["slowest_tile"]), (&json!(true), &json!([58, 68, 16, 16])));
     }
 
@@ -142,9 +143,9 @@ mod tests {
     fn numbers_that_do_not_exist_are_null() {
         let timing = Timing::default();
         let pass =
-            Event::PassFinished { pass: 0, samples: 1, foreseen: 64, elapsed: Duration::ZERO, error: Some(f64::NAN) };
+            Event::PassFinished { pass: 0, samples: 1, foreseen: None, elapsed: Duration::ZERO, error: Some(f64::NAN) };
         let lines = lines(&[pass, Event::Finished { interrupted: false, timing }]);
-        assert!(lines[0]["relative_error"].is_null());
+        assert!(lines[0]["relative_error"].is_null() && lines[0]["foreseen_spp"].is_null());
         assert!(lines[1]["tile_seconds"].is_null() && lines[1]["slowest_tile"].is_null());
     }
 }

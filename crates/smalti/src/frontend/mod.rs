@@ -12,6 +12,7 @@ mod bars;
 #[cfg(test)]
 mod fixture;
 mod frame;
+mod goal;
 mod json;
 pub mod numbers;
 mod pace;
@@ -37,6 +38,7 @@ use plain::Plain;
 use tally::Tally;
 use terminal::{Palette, Terminal};
 
+pub use goal::Goal;
 pub use screen::restore;
 
 /// How progress is shown.
@@ -76,8 +78,8 @@ pub struct Title {
     pub scene: String,
     /// Pixels that are rendered: width and height.
     pub size: (u32, u32),
-    /// Samples a pixel.
-    pub spp: u32,
+    /// What ends it.
+    pub goal: Goal,
     /// Name of the integrator.
     pub integrator: &'static str,
     /// Worker threads.

@@ -87,6 +87,22 @@ mod tests {
         );
     }
 
+    /// Rounds of a second, of which photons take the first 0.6 and 16 samples of 100 pixels the rest: 80 rounds.
+    #[test]
+    fn photons_between_samples_are_foreseen() {
+        let round = |at: f64| 1600.0 * (at.floor() + ((at.fract() - 0.6) / 0.4).max(0.0));
+        let (low, high) = pace(|at| round(at) as u64, 20).remaining(80 * 1600).unwrap();
+        let middle = (low + high).as_secs_f64() / 2.0;
+        assert!((middle / 60.0 - 1.0).abs() < 0.2, "{low:?} {high:?}");
+        // The worst moment: photons are on their way.
+        let mut late = Pace::default();
+        for step in 0..=82 {
+            late.note(seconds(f64::from(step) / 4.0), round(f64::from(step) / 4.0) as u64);
+        }
+        let (low, high) = late.remaining(80 * 1600).unwrap();
+        assert!(((low + high).as_secs_f64() / 2.0 / 59.5 - 1.0).abs() < 0.2, "{low:?} {high:?}");
+    }
+
     #[test]
     fn nothing_is_invented() {
         assert_eq!(Pace::default().remaining(10), None);

@@ -62,8 +62,10 @@ impl<W: Write> View for Plain<W> {
 
     fn tick(&mut self, tally: &Tally) {
         // The summary tells of the end.
-        if tally.done < tally.total && self.cadence.due(tally.elapsed, tally.done, tally.total) {
-            self.say(&frame::status(tally, COLUMNS));
+        if tally.total.is_none_or(|total| tally.done < total)
+            && self.cadence.due(tally.elapsed, tally.done, tally.total.unwrap_or(u64::MAX))
+        {
+            self.say(&frame::status(&self.title, tally, COLUMNS));
         }
     }
 
@@ -113,7 +115,7 @@ mod tests {
         plain.hear(&fixture::first_pass(2)[0], &tally);
         plain.tick(&tally);
         plain.tick(&tally);
-        tally.done = tally.total;
+        tally.done = tally.total.unwrap();
         plain.tick(&tally);
         tally.hear(&fixture::finished(false));
         plain.end(&tally);

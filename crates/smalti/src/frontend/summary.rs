@@ -19,7 +19,7 @@ pub fn lines(title: &Title, tally: &Tally, end: &End) -> Vec<String> {
 
 fn whole(title: &Title, tally: &Tally, end: &End) -> String {
     let done = match end.interrupted {
-        true => format!("interrupted at {}", numbers::done(tally.done, tally.total)),
+        true => "interrupted".to_owned() + &tally.total.map_or(String::new(), |total| at(tally.done, total)),
         false => "done".to_owned(),
     };
     let passes = match end.timing.passes {
@@ -28,6 +28,10 @@ fn whole(title: &Title, tally: &Tally, end: &End) -> String {
     };
     let (setup, render) = (numbers::duration(title.setup), numbers::duration(end.timing.elapsed));
     format!("{done}: set-up {setup}, render {render} in {passes}, {}", numbers::rays(tally.rays_per_second()))
+}
+
+fn at(done: u64, total: u64) -> String {
+    format!(" at {}", numbers::done(done, total))
 }
 
 fn tiles(end: &End) -> Option<String> {

@@ -15,12 +15,12 @@ pub struct Tally {
     pub area: Rect,
     /// Every tile's place.
     pub tiles: Vec<Rect>,
-    /// Samples (camera paths) to do, over all pixels.
-    pub total: u64,
+    /// Samples (camera paths) to do, over all pixels; `None` where that cannot be foreseen yet.
+    pub total: Option<u64>,
     /// Samples done, those of units in hand included. Never falls.
     pub done: u64,
-    /// Samples a pixel that are wanted.
-    pub until: u32,
+    /// Samples a pixel that it will come to; likewise.
+    pub until: Option<u32>,
     /// Samples that every pixel has.
     pub samples: u32,
     /// Samples of finished units.
@@ -96,10 +96,10 @@ impl Tally {
     }
 
     /// Takes what is foreseen into the account: as many more samples a pixel as are missing.
-    fn foresee(&mut self, samples: u32, foreseen: u32) {
+    fn foresee(&mut self, samples: u32, foreseen: Option<u32>) {
         (self.samples, self.until) = (samples, foreseen);
-        let missing = u64::from(foreseen.saturating_sub(samples)) * self.area.pixels() as u64;
-        self.total = self.finished + missing;
+        let missing = |foreseen: u32| u64::from(foreseen.saturating_sub(samples)) * self.area.pixels() as u64;
+        self.total = foreseen.map(|foreseen| self.finished + missing(foreseen));
     }
 
     /// Looks at what the workers have in hand at `now`.
@@ -111,7 +111,7 @@ impl Tally {
         for (index, worker) in self.workers.iter_mut().enumerate() {
             worker.current = progress.current(index, now);
         }
-        self.done = self.done.max(self.finished + progress.in_hand()).min(self.total);
+        self.done = self.done.max(self.finished + progress.in_hand()).min(self.total.unwrap_or(u64::MAX));
         self.photons = self.photons.map(|(_, all)| (progress.photons().min(all), all));
         self.pace.note(self.elapsed, self.done);
     }
