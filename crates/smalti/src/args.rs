@@ -6,7 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use smalti_core::photon::SUB_MAPS;
 use smalti_core::settings::{MOST_PHOTONS, MOST_SHADOW_RAYS, Rect};
 
-use crate::names::{ColourArg, FresnelArg, IntegratorArg, MapArg, SamplerArg, SimdArg, SwitchArg};
+use crate::names::{ColourArg, FresnelArg, IntegratorArg, MapArg, QualityArg, SamplerArg, SimdArg, SwitchArg};
 use crate::parse::{
     Size, parse_crop, parse_finite, parse_length, parse_seconds, parse_share, parse_size, parse_threads,
     parse_threshold,
@@ -128,6 +128,10 @@ pub struct BudgetArgs {
     /// Stop when the relative error is at most this, with 95 % confidence: 1% or 0.01; --spp is the most samples then
     #[arg(long, value_name = "SHARE", value_parser = parse_share, allow_negative_numbers = true)]
     pub target_error: Option<f64>,
+    /// Stop at the error that this stands for, with the shadow rays and the sampling that reach it with the fewest rays:
+    /// short renders of the scene tell. What was typed stays as it was typed
+    #[arg(long, value_name = "HOW", conflicts_with = "target_error")]
+    pub quality: Option<QualityArg>,
 }
 
 /// How the machine is used, and what is told meanwhile.
@@ -158,6 +162,7 @@ Examples:
   smalti render room.toml --crop 120,80,64,64        these pixels as in the whole image, bit for bit
   smalti render room.toml --json --progress none     for a script
   smalti render room.toml --target-error 2%          as many samples as it takes
+  smalti render room.toml --quality good             an error of 3 %, with settings that suit the scene
   smalti render room.toml --time 10s --adaptive on   what ten seconds give, where it is needed
 
 Flags override the scene's [render] table. Threads, tile size and SIMD level change no bit of the image.

@@ -12,6 +12,7 @@ use crate::args::BudgetArgs;
 use crate::describe::percent;
 use crate::error_statement::{self, SAMPLES_NEEDED};
 use crate::frontend;
+use crate::names::QualityArg;
 
 /// What a render may take, and what is wanted of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -36,7 +37,11 @@ const CLOSING_A_PIXEL: Duration = Duration::from_nanos(120);
 impl Budget {
     /// What was typed; `spp` likewise.
     pub fn new(args: &BudgetArgs, spp: Option<u32>) -> Self {
-        Self { time: args.time.map(Duration::from_secs_f64), error: args.target_error, spp }
+        Self {
+            time: args.time.map(Duration::from_secs_f64),
+            error: args.target_error.or(args.quality.map(QualityArg::error)),
+            spp,
+        }
     }
 
     /// Whether time or error end the render.

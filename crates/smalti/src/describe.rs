@@ -5,6 +5,7 @@ use smalti_measure::{BiasStatement, ErrorStatement};
 
 use crate::error_statement::SAMPLES_NEEDED;
 use crate::memory::in_words;
+use crate::quality::QualityRecord;
 use crate::summary::Summary;
 use crate::table::{Align, table};
 
@@ -13,6 +14,7 @@ pub fn describe(summary: &Summary) -> String {
     let rows = [
         ("image", image(summary)),
         ("error", error(summary)),
+        ("quality", summary.quality.as_ref().map(|of| quality(of, summary)).unwrap_or_default()),
         ("radius", summary.bias.as_ref().map(radius).unwrap_or_default()),
         ("time", time(summary)),
         ("rays", rays(summary)),
@@ -22,7 +24,8 @@ pub fn describe(summary: &Summary) -> String {
         ("again", summary.reproduce.clone().unwrap_or_default()),
     ];
     let mut lines: Vec<(&str, String)> = rows.into_iter().filter(|(_, text)| !text.is_empty()).collect();
-    lines.splice(2..2, summary.biases.iter().map(|bias| ("bias", bias.clone())));
+    let biases = lines.iter().position(|(name, _)| *name == "error").map_or(0, |error| error + 1);
+    lines.splice(biases..biases, summary.biases.iter().map(|bias| ("bias", bias.clone())));
     let lines: Vec<Vec<String>> = lines.into_iter().map(|(name, text)| vec![heading(name), text]).collect();
     format!("{}\n{}", style(summary.outputs.join(" ")).bold(), table(&[Align::Left, Align::Left], &lines))
 }
@@ -60,6 +63,28 @@ fn stated(error: &ErrorStatement) -> String {
         pixels => format!("; {pixels} pixels are too uncertain to judge"),
     };
     format!("{} ({range}), relmse {:.3e}{uncertified}", percent(error.relative_error), error.relmse)
+}
+
+/// What `--quality` chose and why, what it expected and what came of it.
+fn quality(record: &QualityRecord, summary: &Summary) -> String {
+    let QualityRecord { name, target_error, gain, pilots, .. } = record;
+    let adaptive = if summary.settings.adaptive { "on" } else { "off" };
+    let gain = match gain {
+        Some(gain) if *gain > 1.0 => format!("{gain:.2} times less error² × rays than the scene's own settings"),
+        Some(_) => "the scene's own settings, which had the least error² × rays".into(),
+        None => "nothing could be told".into(),
+    };
+    let expected = record.expected_error.zip(record.expected_spp);
+    let expected = expected.map(|(error, spp)| format!("expected {} at {spp} spp, ", percent(error)));
+    let got = summary.error.as_ref().map_or("unknown".into(), |error| percent(error.relative_error));
+    format!(
+        "{name} ({}): shadow rays {}, adaptive {adaptive}; of {} short renders {gain}; {}got {got} at {} spp",
+        percent(*target_error),
+        summary.settings.shadow_rays,
+        pilots.len(),
+        expected.unwrap_or_default(),
+        summary.settings.picture.spp,
+    )
 }
 
 /// What photon radii add.

@@ -18,6 +18,7 @@ mod photon_map;
 mod photons;
 mod print;
 mod provenance;
+mod quality;
 mod record;
 mod reproduce;
 mod study;

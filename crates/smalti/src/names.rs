@@ -57,6 +57,37 @@ impl From<FresnelArg> for Fresnel {
     }
 }
 
+/// How good an image is to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum QualityArg {
+    /// A relative error of 10 %
+    Draft,
+    /// A relative error of 3 %
+    Good,
+    /// A relative error of 1 %
+    Final,
+}
+
+impl QualityArg {
+    /// The name that users write.
+    pub fn name(self) -> &'static str {
+        match self {
+            QualityArg::Draft => "draft",
+            QualityArg::Good => "good",
+            QualityArg::Final => "final",
+        }
+    }
+
+    /// The relative error that it stands for.
+    pub fn error(self) -> f64 {
+        match self {
+            QualityArg::Draft => 0.1,
+            QualityArg::Good => 0.03,
+            QualityArg::Final => 0.01,
+        }
+    }
+}
+
 /// Names of photon maps.
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 pub enum MapArg {
@@ -161,6 +192,9 @@ mod tests {
             assert_eq!(typed.get_name(), level.level().map_or("auto", Level::name));
         }
         for name in MapArg::value_variants() {
+            assert_eq!(name.to_possible_value().unwrap().get_name(), name.name());
+        }
+        for name in QualityArg::value_variants() {
             assert_eq!(name.to_possible_value().unwrap().get_name(), name.name());
         }
         for name in ColourArg::value_variants() {

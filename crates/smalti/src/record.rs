@@ -97,7 +97,7 @@ pub struct RunRecord {
     pub threads: usize,
     pub simd: &'static str,
     pub tile: u32,
-    /// Reading, compiling and building, from the start of the process.
+    /// Reading, compiling and building, and the short renders of `--quality`, from the start of the process.
     pub setup_seconds: f64,
     /// Emitting, tracing and storing photons, within `render_seconds`.
     pub photon_seconds: f64,

@@ -11,6 +11,7 @@ use smalti_measure::{BiasStatement, ErrorStatement};
 use smalti_scheduler::{Outcome, Timing};
 
 use crate::job::Job;
+use crate::quality::QualityRecord;
 use crate::record::{self, RunRecord, SettingsRecord, Work};
 use crate::reproduce;
 use crate::{budget, error_statement};
@@ -59,6 +60,8 @@ pub struct Summary {
     pub tiles: Option<TilesRecord>,
     /// Share of the workers' time for tiles that was spent waiting.
     pub idle: f64,
+    /// What `--quality` chose, and what it expected; null without it.
+    pub quality: Option<QualityRecord>,
     /// `spp`, `time`, `error` or `interrupt`.
     pub stopped_by: &'static str,
     /// Whether it came to what was asked for: the error, the time, or else the samples.
@@ -154,6 +157,7 @@ pub fn summary(job: &Job, work: Work, outcome: &Outcome, developed: &Developed) 
         biases: biases(&job.settings, &job.world, outcome.capped),
         tiles: tiles(&outcome.timing),
         idle: idle.iter().sum::<f64>() / idle.len().max(1) as f64,
+        quality: None,
         stopped_by: budget::name(outcome.stopped),
         target_reached: !outcome.interrupted,
         outputs: Vec::new(),

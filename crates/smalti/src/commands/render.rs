@@ -19,7 +19,7 @@ use crate::photon_map::PhotonMap;
 use crate::print::{self, Messages};
 use crate::record::Work;
 use crate::summary::{Developed, Summary, develop, summary};
-use crate::{error_statement, memory, outputs, photon_map, provenance};
+use crate::{error_statement, memory, outputs, photon_map, provenance, quality};
 
 /// Runs the command. `start` is when the process began.
 pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Failure> {
@@ -30,13 +30,21 @@ pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Fa
     let photon_map = args.photon_map.as_deref().map(|path| open_photon_map(path, &mut job)).transpose()?;
     job.notes.iter().for_each(|note| messages.note(note));
     let pool = smalti_scheduler::pool(args.run.threads as usize).map_err(Failure::user)?;
-    let renderer = pool.install(|| job.renderer())?;
     let interrupt = interrupt::listen(frontend::restore).map_err(Failure::bug)?;
+    let mode = Mode::choose(args.run.progress, args.run.quiet, colour);
+    let budget = Budget::new(&args.budget, args.image.spp);
+    let means =
+        quality::Means { pool: &pool, cancel: &interrupt.cancel, deadline: budget.time.map(|time| (start, time)) };
+    let told = |text: &str| {
+        if mode != Mode::None {
+            messages.note(text)
+        }
+    };
+    let quality = quality::settle(&mut job, (&args.budget, &args.image), &means, told)?;
+    let renderer = pool.install(|| job.renderer())?;
     let work = Work { threads: pool.current_num_threads(), tile: job.tile(args.run.work.tile), setup: start.elapsed() };
 
-    let mode = Mode::choose(args.run.progress, args.run.quiet, colour);
     let film = Film::new(job.settings.area(), work.tile);
-    let budget = Budget::new(&args.budget, args.image.spp);
     let goal = budget.goal(&job.settings, job.downsample, &pool, start);
     let workers =
         Workers { pool: &pool, interrupt: &interrupt, photon_map: photon_map.as_ref(), downsample: job.downsample };
@@ -56,6 +64,7 @@ pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Fa
     if developed.samples.1 > 0 {
         let mut summary = summary(&job, work, &outcome, &developed);
         let at_most = budget::at_most(developed.error.as_ref(), developed.bias.as_ref());
+        summary.quality = quality;
         summary.target_reached = budget.is_reached(outcome.stopped, at_most);
         let written = write(&outputs, &developed, &mut summary, job.exposure(args.exposure));
         let written = written.and(errors.map_or(Ok(()), |errors| write_errors(errors, &mut summary, messages)));

@@ -5,6 +5,7 @@ mod images;
 mod mistakes;
 mod photon_map;
 mod photons;
+mod quality;
 mod render;
 mod report;
 mod room;
