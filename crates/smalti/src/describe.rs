@@ -74,8 +74,9 @@ fn quality(record: &QualityRecord, summary: &Summary) -> String {
         Some(_) => "the scene's own settings, which had the least error² × rays".into(),
         None => "nothing could be told".into(),
     };
+    let more = if record.certain { "" } else { " or more" };
     let expected = record.expected_error.zip(record.expected_spp);
-    let expected = expected.map(|(error, spp)| format!("expected {} at {spp} spp, ", percent(error)));
+    let expected = expected.map(|(error, spp)| format!("expected {}{more} at {spp} spp, ", percent(error)));
     let got = summary.error.as_ref().map_or("unknown".into(), |error| percent(error.relative_error));
     format!(
         "{name} ({}): shadow rays {}, adaptive {adaptive}; of {} short renders {gain}; {}got {got} at {} spp",

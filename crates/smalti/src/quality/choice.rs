@@ -43,6 +43,8 @@ pub struct Pilot {
     pub rays: f64,
     /// Its relative error; null where its samples were not finite.
     pub relative_error: Option<f64>,
+    /// Whether that is all of it: no bright light was met so seldom that there may be more.
+    pub certain: bool,
 }
 
 impl Pilot {
@@ -90,6 +92,7 @@ impl Choice {
             target_error: name.error(),
             expected_error: noise.zip(spp).map(|(noise, spp)| (noise / f64::from(spp)).sqrt()),
             expected_spp: spp,
+            certain: self.best().is_some_and(|best| best.certain),
             gain: self.gain(),
             pilots: self.pilots,
         }
@@ -109,10 +112,12 @@ pub struct QualityRecord {
     pub name: &'static str,
     /// Relative error that it stands for.
     pub target_error: f64,
-    /// Relative error to expect of the samples below; null if no short render told one. A time may allow fewer.
+    /// Relative error by noise to expect of the samples below; null if no short render told one. A time may allow fewer.
     pub expected_error: Option<f64>,
     /// Samples a pixel that should do, or as many as `--spp` allows.
     pub expected_spp: Option<u32>,
+    /// Whether the error that is to be expected can be no larger: no bright light was met so seldom by short renders.
+    pub certain: bool,
     /// By what factor squared error times rays is less than with the scene's own settings.
     pub gain: Option<f64>,
     /// The short renders, the one with the scene's own settings first.
@@ -125,7 +130,7 @@ mod tests {
     use crate::names::SwitchArg;
 
     fn pilot(shadow_rays: u32, adaptive: bool, rays: f64, relative_error: Option<f64>) -> Pilot {
-        Pilot { candidate: Candidate { shadow_rays, adaptive }, spp: 64, rays, relative_error }
+        Pilot { candidate: Candidate { shadow_rays, adaptive }, spp: 64, rays, relative_error, certain: true }
     }
 
     /// Ten shadow rays are better, four have less error for their rays, and adaptive sampling has less still.
@@ -191,5 +196,6 @@ mod tests {
         assert_eq!(record(QualityArg::Final, Some(16), 1), (16, 200_000.0));
         let nothing = Choice::default().record(QualityArg::Draft, None, 1);
         assert_eq!((nothing.expected_error, nothing.expected_spp, nothing.gain), (None, None, None));
+        assert!(!nothing.certain && choice().record(QualityArg::Draft, None, 1).certain);
     }
 }

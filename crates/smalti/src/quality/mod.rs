@@ -78,9 +78,10 @@ fn choose(job: &Job, typed: &ImageArgs, means: &Means, told: impl Fn(&str)) -> R
 }
 
 fn in_words(pilot: &Pilot) -> String {
-    let Pilot { candidate: Candidate { shadow_rays, adaptive }, spp, rays, relative_error } = pilot;
+    let Pilot { candidate: Candidate { shadow_rays, adaptive }, spp, rays, relative_error, certain } = pilot;
     let adaptive = if *adaptive { "on" } else { "off" };
     let error = relative_error.map_or("unknown".into(), percent);
+    let error = if *certain { error } else { error + " or more" };
     format!(
         "short render: shadow rays {shadow_rays}, adaptive {adaptive}, {spp} spp: error {error}, {rays:.1} rays a sample"
     )

@@ -78,6 +78,7 @@ impl<'a> Bench<'a> {
             spp,
             rays: paths as f64 / outcome.samples.max(1) as f64 + photons / samples,
             relative_error: error.map(|error| error.relative_error),
+            certain: error.is_some_and(|error| error.relative_error_high.is_some()),
         }
     }
 }

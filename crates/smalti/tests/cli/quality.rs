@@ -120,3 +120,14 @@ fn qualities_that_make_no_sense() {
     refuses("render room.toml --quality goood", &["draft, good, final", "'good'"]);
     refuses("render room.toml --quality good --target-error 1%", &["--quality", "--target-error"]);
 }
+
+#[test]
+fn what_short_renders_cannot_judge_is_said() {
+    let folder = wasteful();
+    // Without shadow rays chance finds the light.
+    let flags = "--quality draft --integrator path --shadow-rays 0 --adaptive off --spp 64";
+    assert_eq!(rendered(&folder, flags)["quality"]["certain"], json!(false));
+    let said = stdout(&run(&folder, &format!("render room.toml {flags} --color never --progress none")));
+    assert!(said.contains(" or more at 64 spp, got "), "{said}");
+    assert_eq!(rendered(&folder, "--quality draft --integrator whitted --spp 64")["quality"]["certain"], json!(true));
+}
