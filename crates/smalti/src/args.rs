@@ -128,7 +128,7 @@ pub struct BudgetArgs {
     /// Stop when the relative error is at most this, with 95 % confidence: 1% or 0.01; --spp is the most samples then
     #[arg(long, value_name = "SHARE", value_parser = parse_share, allow_negative_numbers = true)]
     pub target_error: Option<f64>,
-    /// Stop at the error that this stands for, with the shadow rays and the sampling that reach it with the fewest rays:
+    /// Stop at the error that this stands for, with the shadow rays and the sampling that reach it at the least cost:
     /// short renders of the scene tell. What was typed stays as it was typed
     #[arg(long, value_name = "HOW", conflicts_with = "target_error")]
     pub quality: Option<QualityArg>,

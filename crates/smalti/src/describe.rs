@@ -70,8 +70,8 @@ fn quality(record: &QualityRecord, summary: &Summary) -> String {
     let QualityRecord { name, target_error, gain, pilots, .. } = record;
     let adaptive = if summary.settings.adaptive { "on" } else { "off" };
     let gain = match gain {
-        Some(gain) if *gain > 1.0 => format!("{gain:.2} times less error² × rays than the scene's own settings"),
-        Some(_) => "the scene's own settings, which had the least error² × rays".into(),
+        Some(gain) if *gain > 1.0 => format!("{gain:.2} times less error² × cost than the scene's own settings"),
+        Some(_) => "the scene's own settings, which had the least error² × cost".into(),
         None => "nothing could be told".into(),
     };
     let more = if record.certain { "" } else { " or more" };

@@ -1,4 +1,4 @@
-//! What short renders say: which settings have the least error for their rays, and what error to expect.
+//! What short renders say: which settings have the least error for their cost, and what error to expect.
 
 use serde::Serialize;
 use smalti_core::film::ROUND;
@@ -39,8 +39,8 @@ pub struct Pilot {
     pub candidate: Candidate,
     /// Samples a pixel.
     pub spp: u32,
-    /// Rays of a camera path, those of photons included.
-    pub rays: f64,
+    /// Cost of a camera path in rays, that of photons included; a shadow ray counts as a quarter of another.
+    pub cost: f64,
     /// Its relative error; null where its samples were not finite.
     pub relative_error: Option<f64>,
     /// Whether that is all of it: no bright light was met so seldom that there may be more.
@@ -53,16 +53,16 @@ impl Pilot {
         Some(self.relative_error? * self.relative_error? * f64::from(self.spp))
     }
 
-    /// Squared error times rays: what no number of samples changes.
-    pub fn cost(&self) -> Option<f64> {
-        Some(self.noise()? * self.rays)
+    /// Squared error times cost: what no number of samples changes.
+    pub fn inefficiency(&self) -> Option<f64> {
+        Some(self.noise()? * self.cost)
     }
 }
 
-/// The pilot with the least squared error times rays; the first of equals, and of those that tell nothing.
+/// The pilot with the least squared error times cost; the first of equals, and of those that tell nothing.
 pub fn best(pilots: &[Pilot]) -> Option<usize> {
-    let cost = |index: &usize| pilots[*index].cost().unwrap_or(f64::INFINITY);
-    (0..pilots.len()).min_by(|a, b| cost(a).total_cmp(&cost(b)))
+    let value = |index: &usize| pilots[*index].inefficiency().unwrap_or(f64::INFINITY);
+    (0..pilots.len()).min_by(|a, b| value(a).total_cmp(&value(b)))
 }
 
 /// What short renders came to; the first is of the settings that the scene has.
@@ -77,13 +77,13 @@ impl Choice {
         best(&self.pilots).map(|best| &self.pilots[best])
     }
 
-    /// By what factor squared error times rays is less than with the scene's own settings.
+    /// By what factor squared error times cost is less than with the scene's own settings.
     fn gain(&self) -> Option<f64> {
-        let gain = self.pilots.first()?.cost()? / self.best()?.cost()?;
+        let gain = self.pilots.first()?.inefficiency()? / self.best()?.inefficiency()?;
         gain.is_finite().then_some(gain)
     }
 
-    /// The account of the choice for a render of `most` samples a pixel at most, `by` × `by` pixels of which become one.
+    /// The account of the choice for a render of `most` samples a pixel at most; `by` × `by` pixels become one.
     pub fn record(self, name: QualityArg, most: Option<u32>, by: u32) -> QualityRecord {
         let noise = self.best().and_then(Pilot::noise).map(|noise| noise / f64::from(by * by));
         let spp = noise.map(|noise| samples(noise, name.error()).min(most.unwrap_or(u32::MAX)));
@@ -112,13 +112,14 @@ pub struct QualityRecord {
     pub name: &'static str,
     /// Relative error that it stands for.
     pub target_error: f64,
-    /// Relative error by noise to expect of the samples below; null if no short render told one. A time may allow fewer.
+    /// Relative error by noise to expect of the samples below; null if no short render told one. `--time` may allow
+    /// fewer.
     pub expected_error: Option<f64>,
     /// Samples a pixel that should do, or as many as `--spp` allows.
     pub expected_spp: Option<u32>,
     /// Whether the error that is to be expected can be no larger: no bright light was met so seldom by short renders.
     pub certain: bool,
-    /// By what factor squared error times rays is less than with the scene's own settings.
+    /// By what factor squared error times cost is less than with the scene's own settings.
     pub gain: Option<f64>,
     /// The short renders, the one with the scene's own settings first.
     pub pilots: Vec<Pilot>,
@@ -129,8 +130,8 @@ mod tests {
     use super::*;
     use crate::names::SwitchArg;
 
-    fn pilot(shadow_rays: u32, adaptive: bool, rays: f64, relative_error: Option<f64>) -> Pilot {
-        Pilot { candidate: Candidate { shadow_rays, adaptive }, spp: 64, rays, relative_error, certain: true }
+    fn pilot(shadow_rays: u32, adaptive: bool, cost: f64, relative_error: Option<f64>) -> Pilot {
+        Pilot { candidate: Candidate { shadow_rays, adaptive }, spp: 64, cost, relative_error, certain: true }
     }
 
     /// Ten shadow rays are better, four have less error for their rays, and adaptive sampling has less still.
@@ -145,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn the_least_squared_error_times_rays_is_chosen() {
+    fn the_least_squared_error_times_cost_is_chosen() {
         let choice = choice();
         assert_eq!(best(&choice.pilots), Some(3));
         assert_eq!(best(&choice.pilots[..3]), Some(2));
@@ -153,9 +154,9 @@ mod tests {
     }
 
     #[test]
-    fn twice_the_samples_at_the_same_rays_change_nothing() {
+    fn twice_the_samples_at_the_same_cost_change_nothing() {
         let [short, long] = [(64, 0.1), (128, 0.1 / 2.0f64.sqrt())]
-            .map(|(spp, error)| Pilot { spp, ..pilot(1, false, 10.0, Some(error)) }.cost().unwrap());
+            .map(|(spp, error)| Pilot { spp, ..pilot(1, false, 10.0, Some(error)) }.inefficiency().unwrap());
         assert!((short / long - 1.0).abs() < 1e-12);
     }
 

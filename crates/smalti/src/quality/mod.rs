@@ -1,4 +1,4 @@
-//! `--quality`: an error to be reached, and the settings that reach it with the fewest rays, found by short renders of
+//! `--quality`: an error to be reached, and the settings that reach it at the least cost, found by short renders of
 //! the scene itself.
 //!
 //! What is chosen follows from samples, errors and counts of rays, never from the clock or the number of threads, so that
@@ -78,11 +78,10 @@ fn choose(job: &Job, typed: &ImageArgs, means: &Means, told: impl Fn(&str)) -> R
 }
 
 fn in_words(pilot: &Pilot) -> String {
-    let Pilot { candidate: Candidate { shadow_rays, adaptive }, spp, rays, relative_error, certain } = pilot;
+    let Pilot { candidate: Candidate { shadow_rays, adaptive }, spp, cost, relative_error, certain } = pilot;
     let adaptive = if *adaptive { "on" } else { "off" };
     let error = relative_error.map_or("unknown".into(), percent);
     let error = if *certain { error } else { error + " or more" };
-    format!(
-        "short render: shadow rays {shadow_rays}, adaptive {adaptive}, {spp} spp: error {error}, {rays:.1} rays a sample"
-    )
+    let settings = format!("shadow rays {shadow_rays}, adaptive {adaptive}, {spp} spp");
+    format!("short render: {settings}: error {error}, cost of a path {cost:.2} rays")
 }

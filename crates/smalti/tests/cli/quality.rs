@@ -24,14 +24,14 @@ fn tried(summary: &Value) -> Vec<(u64, bool)> {
     pilots.map(|pilot| (pilot["shadow_rays"].as_u64().unwrap(), pilot["adaptive"].as_bool().unwrap())).collect()
 }
 
-/// Squared error times rays of a pilot.
-fn cost(pilot: &Value) -> f64 {
-    let [error, spp, rays] = ["relative_error", "spp", "rays"].map(|field| pilot[field].as_f64().unwrap());
-    error * error * spp * rays
+/// Squared error times cost of a pilot.
+fn inefficiency(pilot: &Value) -> f64 {
+    let [error, spp, cost] = ["relative_error", "spp", "cost"].map(|field| pilot[field].as_f64().unwrap());
+    error * error * spp * cost
 }
 
 #[test]
-fn what_has_the_least_error_for_its_rays_is_chosen() {
+fn what_has_the_least_error_for_its_cost_is_chosen() {
     let folder = wasteful();
     let summary = rendered(&folder, "--quality draft --integrator path");
     let quality = &summary["quality"];
@@ -40,7 +40,7 @@ fn what_has_the_least_error_for_its_rays_is_chosen() {
     assert_eq!(tried[..4], [(32, false), (1, false), (2, false), (4, false)]);
     assert!(tried.len() == 5 && tried[4].1, "{tried:?}");
     let pilots = quality["pilots"].as_array().unwrap();
-    let best = pilots.iter().min_by(|a, b| cost(a).total_cmp(&cost(b))).unwrap();
+    let best = pilots.iter().min_by(|a, b| inefficiency(a).total_cmp(&inefficiency(b))).unwrap();
     assert_eq!((&summary["shadow_rays"], &summary["adaptive"]), (&best["shadow_rays"], &best["adaptive"]));
     assert!(summary["shadow_rays"] != 32 && quality["gain"].as_f64().unwrap() > 1.5, "{quality}");
 }
@@ -98,7 +98,7 @@ fn people_are_told_what_and_why() {
     for part in [
         "quality  draft (10.000 %): shadow rays ",
         "of 5 short renders",
-        "times less error² × rays",
+        "times less error² × cost",
         "expected ",
         "got ",
     ] {
