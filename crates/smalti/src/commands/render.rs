@@ -35,11 +35,7 @@ pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Fa
     let budget = Budget::new(&args.budget, args.image.spp);
     let means =
         quality::Means { pool: &pool, cancel: &interrupt.cancel, deadline: budget.time.map(|time| (start, time)) };
-    let told = |text: &str| {
-        if mode != Mode::None {
-            messages.note(text)
-        }
-    };
+    let told = |text: &str| tell_unless_quiet(mode, messages, text);
     let quality = quality::settle(&mut job, (&args.budget, &args.image), &means, told)?;
     let renderer = pool.install(|| job.renderer())?;
     let work = Work { threads: pool.current_num_threads(), tile: job.tile(args.run.work.tile), setup: start.elapsed() };
@@ -63,18 +59,30 @@ pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Fa
     }
     if developed.samples.1 > 0 {
         let mut summary = summary(&job, work, &outcome, &developed);
-        let at_most = budget::at_most(developed.error.as_ref(), developed.bias.as_ref());
         summary.quality = quality;
-        summary.target_reached = budget.is_reached(outcome.stopped, at_most);
+        let shortfall = judge(&budget, &outcome, &developed, &mut summary);
         let written = write(&outputs, &developed, &mut summary, job.exposure(args.exposure));
         let written = written.and(errors.map_or(Ok(()), |errors| write_errors(errors, &mut summary, messages)));
         summary.run.wall_seconds = start.elapsed().as_secs_f64();
         tell(args, &summary, messages)?;
-        let shortfall = budget.shortfall(outcome.stopped, developed.error.as_ref(), at_most);
         shortfall.iter().for_each(|text| messages.warning(text));
         written.and(kept)?;
     }
     Ok(status(args.strict, &outcome, &interrupt))
+}
+
+fn tell_unless_quiet(mode: Mode, messages: Messages, text: &str) {
+    if mode != Mode::None {
+        messages.note(text);
+    }
+}
+
+/// Notes whether what was wanted was reached; returns what there is to say if it was not.
+fn judge(budget: &Budget, outcome: &Outcome, developed: &Developed, summary: &mut Summary) -> Option<String> {
+    let error = developed.error.as_ref();
+    let at_most = budget::at_most(error, developed.bias.as_ref());
+    summary.target_reached = budget.is_reached(outcome.stopped, at_most);
+    budget.shortfall(outcome.stopped, error, at_most)
 }
 
 /// What a display says of a job, of which it shows the picture so far.
