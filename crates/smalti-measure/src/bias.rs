@@ -10,7 +10,7 @@ use smalti_core::film::Shifted;
 
 use crate::compare::FLOOR;
 
-/// Side of the blocks of pixels that are taken as independent of each other.
+/// Side of the blocks of pixels that are taken as independent of each other; small images are cut in four by their width.
 const BLOCK: usize = 32;
 
 /// The two-sided 95 % quantile of the normal distribution.
@@ -34,15 +34,16 @@ pub fn bias_statement(pixels: &[Shifted], width: u32) -> Option<BiasStatement> {
     let mean = pixels.iter().flat_map(|pixel| pixel.mean).sum::<f64>() / count;
     let blocks = blocks(pixels, width.max(1) as usize, FLOOR * mean * mean);
     let square = blocks.iter().map(|block| block.sum).sum::<f64>() / count;
-    let error = standard_error(&blocks, square) / count;
+    // Of a single block nobody can tell: not a number.
+    let high = square + Z * standard_error(&blocks, square) / count;
     let shift = pixels.iter().flat_map(|pixel| pixel.halves.as_flattened()).sum::<f64>();
     let found = BiasStatement {
         relative_bias: square.max(0.0).sqrt(),
-        relative_bias_high: (square + Z * error).max(0.0).sqrt(),
+        relative_bias_high: high.max(0.0).sqrt(),
         // Twice the shift is the bias, and it is the mean of its halves.
         brightness: shift / (count * mean),
     };
-    (found.relative_bias_high.is_finite() && found.brightness.is_finite()).then_some(found)
+    (high.is_finite() && found.brightness.is_finite()).then_some(found)
 }
 
 /// What a block of pixels has of the squared bias.
@@ -55,11 +56,12 @@ struct Block {
 }
 
 fn blocks(pixels: &[Shifted], width: usize, floor: f64) -> Vec<Block> {
-    let columns = width.div_ceil(BLOCK);
-    let rows = pixels.len().div_ceil(width).div_ceil(BLOCK);
+    let side = BLOCK.min(width.div_ceil(4));
+    let columns = width.div_ceil(side);
+    let rows = pixels.len().div_ceil(width).div_ceil(side);
     let mut blocks = vec![Block::default(); columns * rows];
     for (index, pixel) in pixels.iter().enumerate() {
-        let block = &mut blocks[index / width / BLOCK * columns + index % width / BLOCK];
+        let block = &mut blocks[index / width / side * columns + index % width / side];
         block.sum += squared_bias(pixel, floor);
         block.values += 3.0;
     }
@@ -120,6 +122,13 @@ mod tests {
     fn what_darkens_everything_is_told_with_its_sign() {
         let found = bias_statement(&image(|_| -0.02, 0.0), 256).unwrap();
         assert!((found.brightness + 0.02).abs() < 1e-12, "{found:?}");
+    }
+
+    #[test]
+    fn small_images_have_an_upper_end_too() {
+        let found = bias_statement(&image(|_| 0.01, 0.005)[..24 * 16], 24).unwrap();
+        assert!(found.relative_bias_high > found.relative_bias && found.relative_bias > 0.005, "{found:?}");
+        assert_eq!(bias_statement(&image(|_| 0.01, 0.005)[..1], 1), None);
     }
 
     #[test]
