@@ -213,7 +213,8 @@ pub struct ImageArgs {
     /// Reflectance of dielectrics
     #[arg(long, value_name = "NAME")]
     pub fresnel: Option<FresnelArg>,
-    /// Whether samples go where the noise is; --spp is their mean then [default: the scene's, or off]
+    /// Whether samples go where the noise is; --spp is their mean then, and a crop has other samples than the same part of
+    /// the whole image [default: the scene's, or off]
     #[arg(long, value_name = "WHETHER")]
     pub adaptive: Option<SwitchArg>,
 }
