@@ -14,8 +14,8 @@ use crate::goal::{Goal, Stopped};
 use crate::look::Looks;
 use crate::pass;
 
-/// Samples a pixel at most where only time or an error ends a render.
-pub(crate) const MOST_SAMPLES: u32 = 1 << 24;
+/// Samples a pixel at most where only time or an error ends a render: as many as no render comes to.
+pub const MOST_SAMPLES: u32 = 1 << 24;
 
 /// With a deadline a pass takes at most this part of the time that there is.
 const PART: f64 = 0.02;

@@ -22,11 +22,12 @@ mod unit;
 
 pub use allot::SIDE as ADAPTIVE_TILE;
 pub use cancel::Cancel;
+pub use course::MOST_SAMPLES;
 pub use event::{ErrorOf, Event, Watch};
 pub use goal::{BoundOf, Goal, NoiseOf, Stopped, Target};
 pub use look::FIRST_LOOK;
 pub use outcome::{Balance, Outcome, Panicked, Photons, Rejections, Timing};
 pub use pool::{PoolError, pool};
 pub use progress::{Current, Progress};
-pub use render::{render, render_to, render_with};
+pub use render::{render, render_to};
 pub use shelf::Shelf;

@@ -6,7 +6,7 @@ use rayon::ThreadPool;
 use smalti_core::film::Film;
 use smalti_core::settings::{Rect, Settings};
 use smalti_measure::{BiasStatement, ErrorStatement};
-use smalti_scheduler::{ADAPTIVE_TILE, Goal, Stopped, Target};
+use smalti_scheduler::{ADAPTIVE_TILE, Goal, MOST_SAMPLES, Stopped, Target};
 
 use crate::args::BudgetArgs;
 use crate::describe::percent;
@@ -24,9 +24,6 @@ pub struct Budget {
     /// Samples a pixel at most; `None`: as the scene says, or without end where time or error do.
     pub spp: Option<u32>,
 }
-
-/// Samples a pixel at most where only time or error end a render.
-const WITHOUT_END: u32 = 1 << 24;
 
 /// Time that is left for what comes after the last sample: the error statement, the files, the end of the process.
 const CLOSING: Duration = Duration::from_millis(4);
@@ -58,7 +55,7 @@ impl Budget {
     /// Samples a pixel at most.
     pub fn most_samples(&self, settings: &Settings) -> u32 {
         match self.is_open() {
-            true => self.spp.unwrap_or(WITHOUT_END),
+            true => self.spp.unwrap_or(MOST_SAMPLES),
             false => settings.spp,
         }
     }

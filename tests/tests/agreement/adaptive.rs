@@ -1,6 +1,6 @@
 //! Adaptive sampling: the mean is that of uniform sampling, the statement is as true, and the error is no larger.
 
-use smalti_core::film::Film;
+use smalti_core::film::{Film, Image};
 use smalti_core::scene::World;
 use smalti_core::settings::{Integrator, Settings};
 use smalti_measure::error_statement;
@@ -21,14 +21,14 @@ fn settings(integrator: Integrator, adaptive: bool, spp: u32) -> Settings {
 
 /// Mean of each tile (9 of them) and channel over the renders, and its standard error.
 fn tiles(films: &[Film]) -> Vec<(f64, f64)> {
-    let mean = |film: &Film, tile: usize, c: usize| {
-        let image = film.develop();
+    let images: Vec<Image> = films.iter().map(Film::develop).collect();
+    let mean = |image: &Image, tile: usize, c: usize| {
         let (x, y) = (tile as u32 % 3 * 16, tile as u32 / 3 * 16);
         let places = (0..256).map(|n| ((y + n / 16) * SIZE + x + n % 16) as usize);
         places.map(|place| f64::from(image.pixels[place][c])).sum::<f64>() / 256.0
     };
     let of = |tile: usize, c: usize| {
-        let values: Vec<f64> = films.iter().map(|film| mean(film, tile, c)).collect();
+        let values: Vec<f64> = images.iter().map(|image| mean(image, tile, c)).collect();
         let middle = values.iter().sum::<f64>() / values.len() as f64;
         let squares: f64 = values.iter().map(|value| (value - middle) * (value - middle)).sum();
         (middle, (squares / (RENDERS * (RENDERS - 1)) as f64).sqrt())

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use smalti_core::film::ROUND;
 use smalti_core::settings::Settings;
-use smalti_scheduler::FIRST_LOOK;
+use smalti_scheduler::{FIRST_LOOK, MOST_SAMPLES};
 
 use crate::args::ImageArgs;
 use crate::names::QualityArg;
@@ -101,7 +101,7 @@ impl Choice {
 
 /// Samples a pixel that bring `noise` down to `error`; the error is not looked at before [`FIRST_LOOK`].
 fn samples(noise: f64, error: f64) -> u32 {
-    let samples = (noise / (error * error)).ceil().min(f64::from(1 << 24)) as u32;
+    let samples = (noise / (error * error)).ceil().min(f64::from(MOST_SAMPLES)) as u32;
     samples.next_multiple_of(ROUND).max(FIRST_LOOK)
 }
 

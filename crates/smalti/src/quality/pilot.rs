@@ -13,6 +13,7 @@ use smalti_scheduler::{ADAPTIVE_TILE, Cancel, Goal, Outcome, Stopped};
 
 use super::choice::{Candidate, Pilot};
 use super::shelf::PilotMaps;
+use crate::budget::Budget;
 use crate::error_statement;
 use crate::exit::Failure;
 use crate::job::Job;
@@ -56,9 +57,8 @@ impl<'a> Bench<'a> {
         let settings = small(&self.job.settings, candidate);
         let renderer = self.pool.install(|| Renderer::new(&self.job.world, settings.clone(), self.job.level));
         let renderer = renderer.map_err(Failure::user)?;
-        let noise = |film: &Film| self.pool.install(|| smalti_measure::noise(film));
-        let noise = candidate.adaptive.then_some(Box::new(noise) as _);
-        let goal = Goal { deadline: self.deadline, noise, ..Goal::default() };
+        let plain = Budget::default().goal(&settings, 1, self.pool, Instant::now());
+        let goal = Goal { deadline: self.deadline, ..plain };
         // The tiles are the same whatever was typed: sums by tile, and thus errors, depend on them in their last bits.
         let film = Film::new(settings.area(), ADAPTIVE_TILE);
         let hands = (self.pool, self.cancel);
