@@ -56,14 +56,17 @@ pub fn caustic<L: Lanes>(
     asking.clear();
     asking.reserve(vertices.len());
     for at in (0..vertices.len()).step_by(L::WIDTH) {
+        // What comes by another diffuse vertex is in the map as well, or behind a final gather.
+        let first = vertices.active(l, at) & l.eq(vertices.pdf(l, at), l.f(0.0));
+        if !l.any(first) {
+            continue;
+        }
         let counts = counts(l, vertices, at);
         let expected = context.pilot.expected(l, vertices.v3(l, ORIGIN, at));
         let chance = expected * counts.max_component(l) * l.f(1.0 / (CERTAIN * context.reference));
         let chance = l.min(l.max(chance, l.f(LEAST_CHANCE)), l.f(1.0));
         let (u, _) = pair(l, context.sampler, vertices.keys(l, at), bounce, Purpose::Gather);
-        // What comes by another diffuse vertex is in the map as well, or behind a final gather.
-        let first = l.eq(vertices.pdf(l, at), l.f(0.0));
-        let asks = vertices.active(l, at) & first & l.lt(u, chance);
+        let asks = first & l.lt(u, chance);
         if l.any(asks) {
             ask(l, (vertices, at), asks, counts.scale(l.f(1.0) / chance), asking);
         }
