@@ -10,7 +10,8 @@
 //!   pixels)`, rays { camera, scattered, shadow }, nonfinite` (samples that were not finite)
 //! - `sample_rejected`: `pixel [x, y], sample`; a sample that was not finite, the first ones of each tile
 //! - `pass_finished`: `pass, spp` (that every pixel has now, in the mean)`, seconds` (since the render began)`,
-//!   relative_error` (or null)`, foreseen_spp` (that it will come to, or null where that cannot be foreseen yet)
+//!   relative_error` (or null)`, foreseen_spp` (that it will come to, or null where that cannot be foreseen yet)`,
+//!   left_seconds [least, most]` (until the end, or null likewise)
 //! - `finished`: `interrupted, seconds, passes, idle` (share of each worker)`, tile_seconds { min, median, max },
 //!   slowest_tile` (both null without tiles)
 
@@ -45,8 +46,12 @@ impl<W: Write> Json<W> {
 }
 
 impl<W: Write> View for Json<W> {
-    fn hear(&mut self, event: &Event, _: &Tally) {
-        self.lines += &object(event, &self.title).to_string();
+    fn hear(&mut self, event: &Event, tally: &Tally) {
+        let mut object = object(event, &self.title);
+        if let Event::PassFinished { .. } = event {
+            object["left_seconds"] = left(&self.title, tally);
+        }
+        self.lines += &object.to_string();
         self.lines.push('\n');
     }
 
@@ -88,6 +93,12 @@ fn object(event: &Event, title: &Title) -> Value {
         }),
         Event::Finished { interrupted, timing } => finished(*interrupted, timing),
     }
+}
+
+/// The least and the most time that is left.
+fn left(title: &Title, tally: &Tally) -> Value {
+    let left = title.goal.left(tally, title.setup);
+    json!(left.map(|(least, most)| [least.as_secs_f64(), most.as_secs_f64()]))
 }
 
 fn finished(interrupted: bool, timing: &Timing) -> Value {
@@ -137,6 +148,19 @@ mod tests {
         assert_eq!(lines[17], json!({ "event": "sample_rejected", "pixel": [12, 30], "sample": 0 }));
         assert_eq!((&lines[18]["relative_error"], &lines[18]["foreseen_spp"]), (&json!(0.0213), &json!(64)));
         assert_eq!((&lines[19]["interrupted"], &lines[19]["slowest_tile"]), (&json!(true), &json!([58, 68, 16, 16])));
+    }
+
+    /// At 20 s half is done.
+    #[test]
+    fn the_time_left_is_told_where_it_can_be_foreseen() {
+        let mut json = Json::new(fixture::title(), Vec::new());
+        let pass = fixture::first_pass(2).pop().unwrap();
+        json.hear(&pass, &fixture::half_way(2));
+        json.hear(&pass, &Tally::default());
+        let told: Vec<Value> = json.lines.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+        let left = told[0]["left_seconds"].as_array().unwrap();
+        assert!(left.iter().all(|seconds| (seconds.as_f64().unwrap() - 20.0).abs() < 0.1), "{left:?}");
+        assert!(told[1]["left_seconds"].is_null());
     }
 
     #[test]
