@@ -6,7 +6,7 @@
 //! the same bits on AVX-512 and on plain f32.
 //!
 //! **Every function that takes lanes must be `#[inline(always)]`**, closures too: a call across the boundary of a
-//! `target_feature` function turns each operation into a call, which is ten times slower. [`dispatch!`] is the only
+//! `target_feature` function turns each operation into a call, which is ten times slower. `dispatch!` is the only
 //! entry.
 
 pub mod level;

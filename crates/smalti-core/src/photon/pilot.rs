@@ -93,7 +93,7 @@ impl Pilot {
         Self { tree, radii, gradual: None, expected }
     }
 
-    /// With a radius that changes gradually: in proportion to the distance of the [`NEAR`]th photon that was sent ahead.
+    /// With a radius that changes gradually: in proportion to the distance of the `NEAR`th photon that was sent ahead.
     /// For a map of as many photons as `of_map`, when `emitted` were sent ahead.
     pub fn gradual(self, (emitted, of_map): (u32, u32)) -> Self {
         let share = of_map as f32 / emitted as f32;

@@ -9,7 +9,7 @@
 //!
 //! Most vertices see little caustic light, and a query costs as much as a bounce. So a vertex asks with a chance in
 //! proportion to what it may expect, and counts accordingly more: unbiased whatever was expected, and as no contribution
-//! is then much larger than [`CERTAIN`] allows, with hardly any noise.
+//! is then much larger than `CERTAIN` allows, with hardly any noise.
 
 use core::f32::consts::FRAC_1_PI;
 

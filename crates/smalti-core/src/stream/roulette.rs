@@ -10,7 +10,7 @@ use crate::mutant::mutant;
 /// its caustics and 35 % without; 3 costs 3 % with them and gains 10 % without.
 const SPARED: f32 = 2.0;
 
-/// Survivors and their throughput: the chance of survival is [`SPARED`] times the largest channel, at most 1.
+/// Survivors and their throughput: the chance of survival is `SPARED` times the largest channel, at most 1.
 #[inline(always)]
 pub fn run<L: Lanes>(l: L, throughput: Rgb<L>, u: L::F) -> (L::M, Rgb<L>) {
     let chance = throughput.max_component(l) * l.f(SPARED);
