@@ -152,7 +152,7 @@ impl Renderer {
             next: stream(true),
             diffuse: has(|stage| *stage == Stage::Surface),
             mirror: has(|stage| matches!(stage, Stage::Mirror(_))),
-            dielectric: has(|stage| matches!(stage, Stage::Dielectric(..) | Stage::Split(_))),
+            dielectric: has(Stage::is_dielectric),
             emitters: has(|stage| *stage == Stage::Emission),
             escaped: has(|stage| *stage == Stage::Environment),
             shadows: direct::Shadows::default(),
@@ -327,6 +327,9 @@ impl Renderer {
             Stage::Dielectric(fresnel, sampler) => {
                 dispatch!(token, l => dielectric::run(l, scene, (fresnel, sampler), bounce, dielectric, next));
             }
+            Stage::Fork(fresnel, sampler) => {
+                dispatch!(token, l => dielectric::fork(l, scene, (fresnel, sampler), bounce, dielectric, next));
+            }
             Stage::Split(fresnel) => {
                 let least = crate::plan::LEAST_CONTRIBUTION;
                 dispatch!(token, l => dielectric::split(l, scene, fresnel, least, dielectric, next));
@@ -369,11 +372,7 @@ impl Renderer {
             materials: [
                 ready(diffuse, waiting, self.plan.has(|stage| *stage == Stage::Surface)),
                 ready(mirror, waiting, self.plan.has(|stage| matches!(stage, Stage::Mirror(_)))),
-                ready(
-                    dielectric,
-                    waiting,
-                    self.plan.has(|stage| matches!(stage, Stage::Dielectric(..) | Stage::Split(_))),
-                ),
+                ready(dielectric, waiting, self.plan.has(Stage::is_dielectric)),
             ],
         };
         dispatch!(self.token, l => sort::run(l, &self.scene, ends, rays, &mut bins));

@@ -34,7 +34,7 @@ pub struct Vertex {
 }
 
 impl Renderer {
-    /// Replays one sample: its rays bounce by bounce (for Whitted all branches of a bounce together), and its radiance,
+    /// Replays one sample: its rays bounce by bounce (all branches of a bounce together), and its radiance,
     /// which is bit for bit what the film gets.
     pub fn replay(&self, pixel: (u32, u32), sample: u32) -> (Vec<Vertex>, [f32; 3]) {
         let mut workspace = self.workspace();

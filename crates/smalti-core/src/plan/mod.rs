@@ -53,8 +53,17 @@ pub enum Stage {
     Mirror(Ending),
     /// Reflection or refraction, by chance.
     Dielectric(Fresnel, SamplerKind),
+    /// Reflection and refraction where both carry enough, else one by chance.
+    Fork(Fresnel, SamplerKind),
     /// Reflection and refraction, as a tree.
     Split(Fresnel),
+}
+
+impl Stage {
+    /// Whether it is a dielectric's.
+    pub fn is_dielectric(&self) -> bool {
+        matches!(self, Self::Dielectric(..) | Self::Fork(..) | Self::Split(_))
+    }
 }
 
 /// What cannot be planned: a contradiction between scene and settings, in the user's words.
@@ -187,7 +196,13 @@ fn stages(scene: &Scene, settings: &Settings, photons: Option<&Photons>) -> Vec<
     let lambert = scene.has(Class::Lambert);
     let samples_lights = samples_lights(scene, settings);
     let fresnel = settings.fresnel;
-    let glass = if path { Stage::Dielectric(fresnel, settings.sampler) } else { Stage::Split(fresnel) };
+    // Only light that a ray can hit has highlights.
+    let is_hit = !scene.lights.emitters.is_empty() || scene.environment.is_some();
+    let glass = match (path, is_hit) {
+        (true, true) => Stage::Fork(fresnel, settings.sampler),
+        (true, false) => Stage::Dielectric(fresnel, settings.sampler),
+        (false, _) => Stage::Split(fresnel),
+    };
     let ending = if path { Ending::Roulette(settings.sampler) } else { Ending::Threshold(LEAST_CONTRIBUTION) };
     [
         (Stage::Intersect, true),

@@ -7,6 +7,7 @@ use crate::photon::pass::Pass;
 use crate::photon::{self, SUB_MAPS};
 use crate::scene::{Class, Scene};
 use crate::settings::{Integrator, Settings};
+use crate::stream::dielectric::FORK;
 
 /// Everything that was decided.
 pub fn of(plan: &Plan, scene: &Scene, settings: &Settings) -> Vec<Decision> {
@@ -148,6 +149,11 @@ fn stage_reason(stage: &Stage, scene: &Scene, settings: &Settings) -> Decision {
         Stage::Diffuse => ("diffuse bounce", "indirect light by cosine-distributed rays".into()),
         Stage::Mirror(_) => ("mirror", of(Class::Mirror, "mirror")),
         Stage::Dielectric(..) => ("dielectric", of(Class::Dielectric, "dielectric")),
+        Stage::Fork(..) => {
+            let share = 100.0 * FORK;
+            let both = format!("{}, both ways where both carry {share} % or more", of(Class::Dielectric, "dielectric"));
+            ("dielectric", both)
+        }
         Stage::Split(_) => ("dielectric tree", of(Class::Dielectric, "dielectric")),
     };
     decision("stage", choice, reason, 0)

@@ -1,4 +1,5 @@
-//! A smooth dielectric boundary: reflected or refracted by chance ([`run`]), or both as a tree ([`split`], whitted).
+//! A smooth dielectric boundary: reflected or refracted by chance ([`run`], photons), or both as a tree ([`split`],
+//! whitted), or both where both matter and else by chance ([`fork`], paths).
 
 use super::{DIRECTION, Scattered, Stream, THROUGHPUT, mirror, surface};
 use crate::bsdf::fresnel::{Boundary, boundary, reflectance};
@@ -28,6 +29,45 @@ pub fn run<L: Lanes>(
     }
 }
 
+/// Paths go both ways where each of them then carries at least so much.
+///
+/// A lamp's highlight on glass is light that chance finds once in 25 paths, and with 25 times its weight. Measured at 128
+/// samples on the rooms with one and two glass balls, against chance alone: error × time of `auto` is 4 % better and 1 %
+/// worse, and a third and a seventh of the uncertified pixels are left; of `path` 8 % and 20 % better. 0.002 and 0.05 do
+/// no better.
+pub const FORK: f32 = 0.01;
+
+/// Sends paths on along both ways where both carry enough: of a plan with photons, which have what comes by glass after a
+/// diffuse bounce, only on the first specular vertices from the camera. The others go one way by chance. Both ways have the
+/// same random numbers. All reflections come before all refractions, as in [`split`].
+#[inline(always)]
+pub fn fork<L: Lanes>(
+    l: L,
+    scene: &Scene,
+    (fresnel, sampler): (Fresnel, SamplerKind),
+    bounce: u32,
+    hits: &Stream,
+    next: &mut Stream,
+) {
+    next.reserve(2 * hits.len());
+    for reflect in [true, false] {
+        for at in (0..hits.len()).step_by(L::WIDTH) {
+            let crossing = Crossing::at(l, scene, fresnel, hits, at);
+            let (u, _) = pair(l, sampler, hits.keys(l, at), bounce, Purpose::Lobe);
+            let reflects = l.lt(u, crossing.reflectance);
+            let throughput = hits.v3(l, THROUGHPUT, at);
+            let shares = crossing.shares(l);
+            let less = l.select(l.lt(shares[0], shares[1]), shares[0], shares[1]);
+            let both = l.le(l.f(FORK), throughput.max_component(l) * less) & hits.comes_from_camera(l, at);
+            let share = l.select(both, shares[usize::from(!reflect)], l.f(1.0));
+            let share = if mutant!("fork_without_shares") { l.f(1.0) } else { share };
+            let goes = both | if reflect { reflects } else { !reflects };
+            let rays = crossing.rays(l, l.m(reflect), hits, at, throughput.scale(share));
+            next.scatter(l, hits, at, hits.active(l, at) & goes, &rays);
+        }
+    }
+}
+
 /// Sends every path on along both ways: first all reflections, then all refractions, so that the order in which a
 /// tree's branches are added does not depend on the width of packets. Branches below `least` are dropped.
 #[inline(always)]
@@ -36,8 +76,7 @@ pub fn split<L: Lanes>(l: L, scene: &Scene, fresnel: Fresnel, least: f32, hits: 
     for reflect in [true, false] {
         for at in (0..hits.len()).step_by(L::WIDTH) {
             let crossing = Crossing::at(l, scene, fresnel, hits, at);
-            let share = if reflect { crossing.reflectance } else { l.f(1.0) - crossing.reflectance };
-            let throughput = hits.v3(l, THROUGHPUT, at).scale(share);
+            let throughput = hits.v3(l, THROUGHPUT, at).scale(crossing.shares(l)[usize::from(!reflect)]);
             let enough = hits.active(l, at) & l.le(l.f(least), throughput.max_component(l));
             if l.any(enough) {
                 next.scatter(l, hits, at, enough, &crossing.rays(l, l.m(reflect), hits, at, throughput));
@@ -64,6 +103,12 @@ impl<L: Lanes> Crossing<L> {
         let boundary = boundary(l, [hit.colour.x, hit.colour.y, hit.colour.z], hit.outside, cosine);
         let reflectance = reflectance(l, fresnel, &boundary);
         Self { hit, side, boundary, reflectance }
+    }
+
+    /// What is reflected and what is refracted.
+    #[inline(always)]
+    fn shares(&self, l: L) -> [L::F; 2] {
+        [self.reflectance, l.f(1.0) - self.reflectance]
     }
 
     /// The reflected rays where `reflects`, else the refracted ones.

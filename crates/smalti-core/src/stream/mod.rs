@@ -290,6 +290,12 @@ impl Stream {
         l.select(l.eq(self.f(l, PDF, at), l.f(0.0)), l.f(0.0), l.f(-1.0))
     }
 
+    /// Lanes whose paths came from the camera by specular bounces alone; all where the plan does not mark the others.
+    #[inline(always)]
+    pub fn comes_from_camera<L: Lanes>(&self, l: L, at: usize) -> L::M {
+        if self.used.marks { l.eq(self.f(l, PDF, at), l.f(0.0)) } else { l.m(true) }
+    }
+
     /// The scattering density of a packet; 0 where light is found in one way only.
     #[inline(always)]
     pub fn pdf<L: Lanes>(&self, l: L, at: usize) -> L::F {
