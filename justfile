@@ -41,9 +41,13 @@ bless:
     SMALTI_BLESS=1 cargo test --package smalti-tests --test golden
     git diff --stat
 
-# Does the error that renders state of themselves hold the truth as often as it claims? (about an hour)
+coverage_of := "cargo run --release --quiet --package smalti-tests --bin coverage -- --seeds 200"
+
+# Does the error that renders state of themselves hold the truth as often as it claims? docs/promises.md (about an hour)
 coverage *FLAGS:
-    cargo run --release --quiet --package smalti-tests --bin coverage -- {{FLAGS}} scenes/cornell.toml scenes/furnace.toml scenes/blob.toml scenes/hexroom.toml scenes/hexroom-caustic.toml
+    {{coverage_of}} --size 160 --spp 128 {{FLAGS}} scenes/hexroom.toml scenes/hexroom-caustic.toml
+    {{coverage_of}} --size 200 --spp 64 {{FLAGS}} scenes/cornell.toml scenes/furnace.toml
+    {{coverage_of}} --size 128 --spp 64 {{FLAGS}} scenes/blob.toml
 
 # Put each known mistake in and see that a test notices (about half an hour)
 mutants *NAMES:
