@@ -106,3 +106,24 @@ fn behind_a_pane(angle: f64) -> World {
     camera(&mut world, at(-s, 0.0, c), DVec3::ZERO, 1e-5);
     world
 }
+
+/// A lamp seen in a pane at 60°: each sample has what the front reflects, F, and no sample more than that and what is
+/// left of the rest after one reflection more. By chance alone they would have 0 or 1.
+#[test]
+fn a_highlight_is_in_every_sample() {
+    let mut world = behind_a_pane(60.0);
+    world.polygons.pop();
+    let black = material(&mut world, grey(0.0));
+    let (s, c) = libm::sincos(60f64.to_radians());
+    // Across the reflected ray, facing the pane.
+    let across = at(-c, 0.0, s);
+    quad(&mut world, at(s, 0.0, c), (across * 0.5, DVec3::Y * 0.5), black, Some(1.0));
+    let (all, once) = (2.0 * 0.089_189 / 1.089_189, 0.089_189);
+    let one = Settings { jitter: false, spp: 1, ..settings(32, 32, 1) };
+    let pixels = render(&world, &one).image.pixels;
+    for value in pixels.iter().map(|pixel| f64::from(pixel[0])) {
+        assert!((once - 1e-4..once + once * (1.0 - once) + 1e-4).contains(&value), "{value}");
+    }
+    let mean = pixels.iter().map(|pixel| f64::from(pixel[0])).sum::<f64>() / pixels.len() as f64;
+    assert!((mean - all).abs() < 0.003, "{mean} instead of {all}");
+}
