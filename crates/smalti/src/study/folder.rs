@@ -1,6 +1,7 @@
 //! The folder of a study: found or made, written so that a killed process leaves nothing half done.
 
-use std::fs;
+use std::cell::OnceCell;
+use std::fs::{self, File, TryLockError};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -13,7 +14,11 @@ use crate::exit::Failure;
 
 /// Where a study is kept.
 #[derive(Debug)]
-pub struct Folder(PathBuf);
+pub struct Folder {
+    path: PathBuf,
+    /// The folder itself, locked as long as this process works in it.
+    held: OnceCell<File>,
+}
 
 /// The file with everything in it.
 const RECORD: &str = "study.json";
@@ -32,15 +37,15 @@ impl Folder {
             Some(path) => path.to_owned(),
             None => format!("{}-study-{preset}", scene.file_stem().ok_or_else(no_name)?.to_string_lossy()).into(),
         };
-        let folder = Self(path);
+        let folder = Self { path, held: OnceCell::new() };
         folder.check()?;
         Ok(folder)
     }
 
     fn check(&self) -> Result<(), Failure> {
-        let shown = self.0.display();
-        if self.0.is_dir() {
-            let is_empty = fs::read_dir(&self.0).map_err(Failure::user)?.next().is_none();
+        let shown = self.path.display();
+        if self.path.is_dir() {
+            let is_empty = fs::read_dir(&self.path).map_err(Failure::user)?.next().is_none();
             let message = format!("{shown}: the folder is not empty and has no study in it; take another one with -o");
             return if is_empty || self.file(RECORD).is_file() {
                 self.check_place()
@@ -48,11 +53,11 @@ impl Folder {
                 Err(Failure::user(message))
             };
         }
-        if self.0.exists() {
+        if self.path.exists() {
             return Err(Failure::user(format!("{shown}: is there already and is not a folder")));
         }
         // Where the folder can be made a file can.
-        smalti_image::check_place(&self.0).map_err(Failure::user)
+        smalti_image::check_place(&self.path).map_err(Failure::user)
     }
 
     fn check_place(&self) -> Result<(), Failure> {
@@ -61,22 +66,23 @@ impl Folder {
 
     /// A file in it.
     pub fn file(&self, name: &str) -> PathBuf {
-        self.0.join(name)
+        self.path.join(name)
     }
 
     /// Its path as typed.
     pub fn path(&self) -> &Path {
-        &self.0
+        &self.path
     }
 
     /// The study that is there, if it answers `question`; `fresh`: whatever is there goes.
     ///
     /// # Errors
-    /// A study with another question, or what is not a study of this format.
+    /// A study with another question, or what is not a study of this format; another process works on it.
     pub fn open(&self, question: &Question, fresh: bool) -> Result<Option<Study>, Failure> {
         if !self.file(RECORD).is_file() {
             return Ok(None);
         }
+        self.hold()?;
         let there = self.read();
         if fresh {
             there.iter().for_each(|study| self.clear(study));
@@ -89,9 +95,24 @@ impl Folder {
         }
         Err(Failure::user(format!(
             "{} holds the answer to another question: {}. Take another folder with -o, or begin anew with --fresh",
-            self.0.display(),
+            self.path.display(),
             differences.join("; ")
         )))
+    }
+
+    /// Keeps other processes out: each would write over what the others found.
+    fn hold(&self) -> Result<(), Failure> {
+        if self.held.get().is_some() {
+            return Ok(());
+        }
+        // Some systems cannot lock a folder.
+        let Ok(file) = File::open(&self.path) else { return Ok(()) };
+        if let Err(TryLockError::WouldBlock) = file.try_lock() {
+            let shown = self.path.display();
+            return Err(Failure::user(format!("{shown}: another process is at work on the study that is there")));
+        }
+        self.held.get_or_init(|| file);
+        Ok(())
     }
 
     fn read(&self) -> Result<Study, Failure> {
@@ -118,10 +139,11 @@ impl Folder {
     /// Makes the folder.
     ///
     /// # Errors
-    /// What the system answers.
+    /// What the system answers; another process works in it.
     pub fn make(&self) -> Result<(), Failure> {
         fs::create_dir_all(self.file(IMAGES))
-            .map_err(|error| Failure::user(format!("{}: cannot be made: {error}", self.0.display())))
+            .map_err(|error| Failure::user(format!("{}: cannot be made: {error}", self.path.display())))?;
+        self.hold()
     }
 
     /// Writes the study in the place of the one that is there.
@@ -168,7 +190,7 @@ mod tests {
 
     #[test]
     fn the_folder_has_the_names_of_scene_and_preset() {
-        let named = |scene: &str| Folder::checked(None, Path::new(scene), "sweep").map(|folder| folder.0);
+        let named = |scene: &str| Folder::checked(None, Path::new(scene), "sweep").map(|folder| folder.path);
         assert_eq!(named("far/away/room.toml"), Ok("room-study-sweep".into()));
         assert!(named("..").is_err());
     }
@@ -192,5 +214,21 @@ mod tests {
         let folder = Folder::checked(Some(place.path()), Path::new("a.toml"), "sweep").unwrap();
         assert!(folder.open(&Question::new(), false).unwrap_err().message.contains("--fresh"));
         assert_eq!(folder.open(&Question::new(), true), Ok(None));
+    }
+
+    /// Two of the same process are kept apart as two processes are.
+    #[cfg(unix)]
+    #[test]
+    fn one_at_a_time_works_on_a_study() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = || Folder::checked(Some(place.path()), Path::new("a.toml"), "sweep").unwrap();
+        let (first, second) = (folder(), folder());
+        first.make().unwrap();
+        first.make().unwrap();
+        assert!(second.make().unwrap_err().message.contains("another process"));
+        fs::write(place.path().join(RECORD), "{}").unwrap();
+        assert!(second.open(&Question::new(), true).unwrap_err().message.contains("another process"));
+        drop(first);
+        assert_eq!(second.open(&Question::new(), true), Ok(None));
     }
 }
