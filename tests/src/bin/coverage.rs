@@ -4,10 +4,12 @@
 //! ```text
 //! coverage [--seeds 200] [--spp 64] [--size 200] [--integrator NAME,...] [--films FOLDER] SCENE...
 //! ```
-//! Prints a line of CSV for each scene and integrator. The truth is the mean of as many other renders: by `auto` for what
-//! has no bias (`path` and `auto`), by the integrator itself for `photon` and `whitted`, whose bias is no noise. With
-//! `--films` the estimates of all renders are kept in a folder and taken from there the next time, so that another
-//! statement can be judged without rendering again.
+//! Prints a line of CSV for each scene and integrator. The truth is the mean of as many other renders: by `auto` for
+//! `path` and `auto`, by the integrator itself for `photon` and `whitted`, which leave light out or have a bias of their
+//! own in every render. Where photon radii put a bias into an image that its statement names, the truth may be above the
+//! interval by the upper end of that, squares added; `noise` counts without it. With `--films` the estimates of all renders
+//! are kept in a folder and taken from there the next time, so that another statement can be judged without rendering
+//! again.
 
 use std::fs;
 use std::path::PathBuf;
@@ -17,7 +19,7 @@ use smalti_core::film::{BATCHES, Counts, Film};
 use smalti_core::render::{Level, Renderer};
 use smalti_core::scene::World;
 use smalti_core::settings::{Integrator, Rect, Settings};
-use smalti_measure::{ErrorStatement, error_statement};
+use smalti_measure::{ErrorStatement, bias_statement, error_statement};
 use smalti_scheduler::{Cancel, pool, render};
 
 struct Arguments {
@@ -33,7 +35,7 @@ const INTEGRATORS: [Integrator; 4] = [Integrator::Path, Integrator::Auto, Integr
 
 fn main() -> Result<()> {
     let arguments = Arguments::read()?;
-    println!("scene,integrator,spp,renders,metric,covered,below,above,open,median_ratio,truth,stated");
+    println!("scene,integrator,spp,renders,metric,covered,noise,below,above,open,median_ratio,truth,stated,bias");
     for path in &arguments.scenes {
         let scene = path.file_stem().context("a scene is a file")?.to_string_lossy().into_owned();
         let world = smalti_scene::load(path)?.world;
@@ -94,11 +96,11 @@ impl Cell<'_> {
         let truth = self.truth()?;
         let mut outcomes = [Outcome::default(), Outcome::default()];
         for seed in 0..self.arguments.seeds {
-            let film = self.film(self.integrator, seed)?;
+            let (film, bias) = self.film(self.integrator, seed)?;
             let stated = error_statement(&film).context("it takes 32 samples a pixel")?;
             let truths = self.errors(&film, &truth);
-            outcomes[0].count(truths[0], relmse(&stated));
-            outcomes[1].count(truths[1], relative_error(&stated));
+            outcomes[0].count(truths[0], relmse(&stated), |noise| noise + bias * bias, bias * bias);
+            outcomes[1].count(truths[1], relative_error(&stated), |noise| (noise * noise + bias * bias).sqrt(), bias);
         }
         for (metric, outcome) in ["relmse", "relative_error"].into_iter().zip(outcomes) {
             let Arguments { spp, seeds, .. } = self.arguments;
@@ -114,7 +116,7 @@ impl Cell<'_> {
         let (mut sums, mut squares) = (Vec::new(), Vec::new());
         let seeds = self.arguments.seeds as f64;
         for seed in self.arguments.seeds..2 * self.arguments.seeds {
-            let image = pixels(&self.film(integrator, seed)?);
+            let image = pixels(&self.film(integrator, seed)?.0);
             sums.resize(image.len(), [0.0; 3]);
             squares.resize(image.len(), [0.0; 3]);
             for ((sum, square), pixel) in sums.iter_mut().zip(&mut squares).zip(image) {
@@ -129,27 +131,29 @@ impl Cell<'_> {
         Ok(Truth { mean: sums, noise })
     }
 
-    /// The film of a render: a kept one, or a new one.
-    fn film(&self, integrator: Integrator, seed: u64) -> Result<Film> {
+    /// The film of a render, a kept one or a new one, and its bias by photon radii at most, relative.
+    fn film(&self, integrator: Integrator, seed: u64) -> Result<(Film, f64)> {
         let Some(folder) = &self.arguments.films else { return self.render(integrator, seed) };
         let Arguments { spp, side, .. } = *self.arguments;
         let file = folder.join(format!("{}-{}-{spp}-{side}-{seed}.film", self.scene, integrator.name()));
         if file.exists() {
             return Ok(unpacked(&fs::read(file)?, side, spp));
         }
-        let made = self.render(integrator, seed)?;
+        let (made, bias) = self.render(integrator, seed)?;
         fs::create_dir_all(folder)?;
-        fs::write(&file, packed(&made))?;
-        Ok(made)
+        fs::write(&file, packed(&made, bias))?;
+        Ok((made, bias))
     }
 
-    fn render(&self, integrator: Integrator, seed: u64) -> Result<Film> {
+    fn render(&self, integrator: Integrator, seed: u64) -> Result<(Film, f64)> {
         let Arguments { spp, side, .. } = *self.arguments;
         let settings = Settings { integrator, seed, spp, width: side, height: side, ..Settings::default() };
         let pool = pool(0)?;
         let renderer = pool.install(|| Renderer::new(self.world, settings, Level::available()[0]))?;
         let film = Film::new(renderer.settings().area(), 32);
-        Ok(render(&renderer, film, &pool, &Cancel::default(), None)?.film)
+        let film = render(&renderer, film, &pool, &Cancel::default(), None)?.film;
+        let bias = film.shifts().and_then(|shifts| bias_statement(&shifts, side));
+        Ok((film, bias.map_or(0.0, |bias| bias.relative_bias_high.max(bias.relative_bias))))
     }
 
     /// True relmse and relative error, freed of the noise that the truth has of its own.
@@ -184,16 +188,23 @@ fn relative_error(stated: &ErrorStatement) -> [Option<f64>; 3] {
 struct Outcome {
     below: u64,
     above: u64,
+    /// Above what is stated of noise alone.
+    above_noise: u64,
     open: u64,
+    biases: Vec<f64>,
     ratios: Vec<f64>,
     truths: Vec<f64>,
     stated: Vec<f64>,
 }
 
 impl Outcome {
-    fn count(&mut self, truth: f64, [low, value, high]: [Option<f64>; 3]) {
+    /// `biased`: what noise comes to together with the bias.
+    fn count(&mut self, truth: f64, [low, value, noise]: [Option<f64>; 3], biased: impl Fn(f64) -> f64, bias: f64) {
+        let high = noise.map(biased);
         self.below += u64::from(low.is_some_and(|low| truth < low));
         self.above += u64::from(high.is_some_and(|high| truth > high));
+        self.above_noise += u64::from(noise.is_some_and(|noise| truth > noise));
+        self.biases.push(bias);
         self.open += u64::from(high.is_none());
         self.ratios.push(high.zip(low).map_or(f64::INFINITY, |(high, low)| if high == 0.0 { 1.0 } else { high / low }));
         self.truths.push(truth);
@@ -202,10 +213,12 @@ impl Outcome {
 
     fn line(&self) -> String {
         let renders = self.truths.len() as u64;
-        let covered = (renders - self.below - self.above) as f64 / renders as f64;
+        let [covered, noise] =
+            [self.above, self.above_noise].map(|above| (renders - self.below - above) as f64 / renders as f64);
         let Self { below, above, open, .. } = self;
-        let [ratio, truth, stated] = [&self.ratios, &self.truths, &self.stated].map(|values| median(values));
-        format!("{covered:.4},{below},{above},{open},{ratio:.4},{truth:.6},{stated:.6}")
+        let [ratio, truth, stated, bias] =
+            [&self.ratios, &self.truths, &self.stated, &self.biases].map(|values| median(values));
+        format!("{covered:.4},{noise:.4},{below},{above},{open},{ratio:.4},{truth:.6},{stated:.6},{bias:.6}")
     }
 }
 
@@ -213,8 +226,8 @@ fn median(values: &[f64]) -> f64 {
     smalti_measure::median(values).unwrap_or(f64::NAN)
 }
 
-/// The sums of all pixels, in image order, as f32.
-fn packed(film: &Film) -> Vec<u8> {
+/// The bias, then the sums of all pixels, in image order, as f32.
+fn packed(film: &Film, bias: f64) -> Vec<u8> {
     let width = film.area.width as usize;
     let mut sums = vec![[[0.0f32; 3]; BATCHES]; film.area.pixels()];
     for tile in &film.tiles {
@@ -224,15 +237,16 @@ fn packed(film: &Film) -> Vec<u8> {
             sums[index] = pixel.sums.map(|sum| sum.map(|value| value as f32));
         }
     }
-    sums.as_flattened().as_flattened().iter().flat_map(|value| value.to_le_bytes()).collect()
+    let values = [bias as f32].into_iter().chain(sums.as_flattened().as_flattened().iter().copied());
+    values.flat_map(f32::to_le_bytes).collect()
 }
 
-fn unpacked(bytes: &[u8], side: u32, spp: u32) -> Film {
+fn unpacked(bytes: &[u8], side: u32, spp: u32) -> (Film, f64) {
     let values: Vec<f64> = bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]).into()).collect();
     let mut film = Film::new(Rect { x: 0, y: 0, width: side, height: side }, side);
     film.tiles[0].counts = Counts::of(spp);
-    for (pixel, sums) in film.tiles[0].pixels.iter_mut().zip(values.chunks_exact(3 * BATCHES)) {
+    for (pixel, sums) in film.tiles[0].pixels.iter_mut().zip(values[1..].chunks_exact(3 * BATCHES)) {
         pixel.sums = std::array::from_fn(|batch| std::array::from_fn(|c| sums[3 * batch + c]));
     }
-    film
+    (film, values[0])
 }
