@@ -27,7 +27,7 @@ pub struct ErrorStatement {
     pub relative_error_low: f64,
     /// Upper end of its interval.
     pub relative_error_high: Option<f64>,
-    /// Pixels of which a quarter of the samples is much brighter than the rest: nobody can say yet whether that is chance.
+    /// Pixels of which a quarter or half of the samples is much brighter than the rest: nobody can say yet whether that is chance.
     pub uncertified_pixels: usize,
 }
 

@@ -1,5 +1,7 @@
 //! Table 1 of the report that smalti starts from (Larsson and Voith 2023), beside what a study measured.
 
+use smalti_measure::Repetitions;
+
 use crate::findings::Finding;
 use crate::numbers::{percent, significant};
 use crate::record::{Arm, Study};
@@ -83,7 +85,9 @@ pub(crate) fn cells(ours: &Ours) -> [String; 8] {
         true => in_words(theirs),
         false => format!("{} (ours {})", in_words(theirs), in_words(ours_size)),
     };
-    let measured = |of: fn(&Finding) -> String| ours.measured.map_or("-".into(), |(_, finding)| of(finding));
+    let measured = |of: fn(&Finding) -> Repetitions, shown: fn(f64) -> String| {
+        ours.measured.map_or("-".into(), |(_, finding)| with_ends(&of(finding), shown))
+    };
     [
         row.image.into(),
         resolution,
@@ -91,9 +95,17 @@ pub(crate) fn cells(ours: &Ours) -> [String; 8] {
         row.shadow_rays.to_string(),
         if row.ray_noise { "yes" } else { "no" }.into(),
         format!("{:.2}", row.seconds),
-        measured(|finding| significant(finding.seconds.median, 3)),
-        measured(|finding| percent(finding.relative_error.median)),
+        measured(|finding| finding.seconds, |seconds| significant(seconds, 3)),
+        measured(|finding| finding.relative_error, percent),
     ]
+}
+
+/// The median and, of several repetitions, the ends of what is known of it.
+fn with_ends(found: &Repetitions, shown: fn(f64) -> String) -> String {
+    match found.count {
+        1 => shown(found.median),
+        _ => format!("{} ({} to {})", shown(found.median), shown(found.low), shown(found.high)),
+    }
 }
 
 /// The comparison as a Markdown table; `None` for a study that has none of the rows.
@@ -146,6 +158,16 @@ mod tests {
         assert!(text.contains("| Figure 4 | 800 × 800 | 5 | 5 | yes | 88.93 | - | - |\n"), "{text}");
         assert_eq!(text.lines().count(), 8);
         assert_eq!(table_one_markdown(&fixture::sweep()), None);
+    }
+
+    #[test]
+    fn repetitions_have_their_ends() {
+        let mut study = study(800);
+        for (repetition, seconds) in [(1, 2.9), (2, 3.1)] {
+            study.runs.push(fixture::run(1, repetition, seconds, 0.25));
+        }
+        let text = table_one_markdown(&study).unwrap();
+        assert!(text.contains("| 29.15 | 3.00 (2.76 to 3.26) | 25.0 % (25.0 % to 25.0 %) |"), "{text}");
     }
 
     #[test]

@@ -40,7 +40,8 @@ pub(super) fn section(study: &Study, findings: &[Finding]) -> Markup {
             }
             p.note {
                 "The report: Larsson and Voith, Monte Carlo Ray Tracing and Photon Mapping, Linköping University 2023; one thread of an "
-                "AMD Ryzen 7 6800H. smalti: this machine, all of its threads. The report states no error."
+                "AMD Ryzen 7 6800H. smalti: this machine, all of its threads, medians with 95 % intervals (ranges of two "
+                "repetitions). The report states no error."
             }
         }
     }

@@ -40,10 +40,10 @@ The folder keeps:
     mean_red, mean_green, mean_blue
   arms.csv     a line for each arm:
     name, label, group, then every knob by the name of its flag, width, height, runs
-    seconds                         the median; _least and _most of the repetitions
-    relmse                          the mean; _least and _most
-    relative_error                  the root of the mean square; _least and _most
-    efficiency                      1 / (relmse x seconds)";
+    seconds, relmse, relative_error medians; _low and _high: the 95 % interval from three
+                                    repetitions on, else the least and the most
+    efficiency                      1 / (relmse x seconds), the median
+    on_front                        whether no other arm is as fast and as accurate";
 
 /// The presets.
 #[derive(Debug, Subcommand)]

@@ -11,6 +11,8 @@ pub mod args;
 mod bench;
 mod calibrate;
 mod combine;
+#[cfg(test)]
+mod fixture;
 mod folder;
 mod knobs;
 mod lists;
@@ -25,7 +27,6 @@ mod progress;
 mod question;
 mod reference;
 mod report;
-mod results;
 mod tables;
 mod truth;
 mod values;

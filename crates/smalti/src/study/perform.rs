@@ -174,7 +174,7 @@ fn arms(plan: &Plan, job: &Job) -> Result<Vec<Arm>, Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::results::tests::run;
+    use crate::study::fixture::run;
 
     #[test]
     fn what_is_there_is_not_rendered_again() {

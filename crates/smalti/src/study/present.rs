@@ -1,10 +1,9 @@
 //! What is told of a study at its end.
 
-use smalti_report::{Reference, Study};
+use smalti_report::{Reference, Study, findings};
 
 use super::folder::Folder;
 use super::reference::FIFTH;
-use super::results;
 use crate::exit::Failure;
 use crate::study_report;
 
@@ -39,15 +38,15 @@ fn references(study: &Study) -> String {
 
 /// The least relmse of the arms of a size.
 fn best(study: &Study, size: [u32; 2]) -> Option<f64> {
-    let of_size = (0..study.arms.len()).filter(|arm| study.arms[*arm].size == size);
-    let errors = of_size.filter_map(|arm| Some(results::of(study, arm)?.relmse.middle));
-    errors.reduce(f64::min).filter(|best| *best > 0.0)
+    let found = findings(study);
+    let of_size = found.iter().filter(|found| study.arms[found.arm].size == size);
+    of_size.map(|found| found.relmse.median).reduce(f64::min).filter(|best| *best > 0.0)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::results::tests::study;
+    use crate::study::fixture::study;
 
     #[test]
     fn references_are_told_by_what_they_leave_uncertain() {

@@ -114,7 +114,7 @@ fn left(rest: [f64; 2]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::results::tests::{arm, run};
+    use crate::study::fixture::{arm, run};
 
     #[test]
     fn a_log_has_a_line_for_each_render() {

@@ -1,11 +1,11 @@
 //! `runs.csv` and `arms.csv`: the study for other programs. Their columns are described in `smalti study --help`.
 
 use serde::Serialize;
-use smalti_report::{Run, Study};
+use smalti_measure::Repetitions;
+use smalti_report::{Finding, Run, Study, findings};
 
 use super::folder::Folder;
 use super::knobs::KNOBS;
-use super::results;
 use crate::exit::Failure;
 
 /// A line of `runs.csv`.
@@ -79,46 +79,48 @@ fn line<'a>(study: &'a Study, run: &'a Run) -> RunLine<'a> {
 }
 
 /// Columns of `arms.csv` after those of the knobs.
-const FIGURES: [&str; 13] = [
+const FIGURES: [&str; 14] = [
     "width",
     "height",
     "runs",
     "seconds",
-    "seconds_least",
-    "seconds_most",
+    "seconds_low",
+    "seconds_high",
     "relmse",
-    "relmse_least",
-    "relmse_most",
+    "relmse_low",
+    "relmse_high",
     "relative_error",
-    "relative_error_least",
-    "relative_error_most",
+    "relative_error_low",
+    "relative_error_high",
     "efficiency",
+    "on_front",
 ];
 
 fn arms(study: &Study) -> Result<Vec<u8>, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let knobs = KNOBS.iter().map(|knob| knob.name).filter(|name| *name != "size");
     writer.write_record(["name", "label", "group"].into_iter().chain(knobs.clone()).chain(FIGURES))?;
+    let found = findings(study);
     for (index, arm) in study.arms.iter().enumerate() {
         let mut record = vec![arm.name.clone(), arm.label.clone(), arm.group.clone()];
         record.extend(knobs.clone().map(|name| arm.knobs.get(name).cloned().unwrap_or_default()));
         record.extend(arm.size.map(|side| side.to_string()));
-        record.extend(figures(study, index));
+        record.extend(figures(found.iter().find(|found| found.arm == index)));
         writer.write_record(record)?;
     }
     finished(writer)
 }
 
 /// The figures of an arm, empty before its first run.
-fn figures(study: &Study, arm: usize) -> Vec<String> {
-    let Some(found) = results::of(study, arm) else {
+fn figures(found: Option<&Finding>) -> Vec<String> {
+    let Some(found) = found else {
         return vec![String::new(); FIGURES.len() - 2];
     };
-    let spreads = [found.seconds, found.relmse, found.relative_error];
-    let figures = spreads.into_iter().flat_map(|spread| [spread.middle, spread.least, spread.most]);
-    let efficiency = found.efficiency.map(|efficiency| efficiency.to_string()).unwrap_or_default();
-    let figures = figures.map(|figure| figure.to_string());
-    std::iter::once(found.runs.to_string()).chain(figures).chain([efficiency]).collect()
+    let Repetitions { count, .. } = found.seconds;
+    let ends = [found.seconds, found.relmse, found.relative_error].map(|of| [of.median, of.low, of.high]);
+    let efficiency = found.efficiency.map(|efficiency| efficiency.median.to_string()).unwrap_or_default();
+    let figures = ends.into_iter().flatten().map(|figure| figure.to_string());
+    std::iter::once(count.to_string()).chain(figures).chain([efficiency, found.on_front.to_string()]).collect()
 }
 
 fn finished(writer: csv::Writer<Vec<u8>>) -> Result<Vec<u8>, csv::Error> {
@@ -128,7 +130,7 @@ fn finished(writer: csv::Writer<Vec<u8>>) -> Result<Vec<u8>, csv::Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::results::tests::study;
+    use crate::study::fixture::study;
 
     fn lines(bytes: Vec<u8>) -> Vec<Vec<String>> {
         let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(bytes.as_slice());
