@@ -1,4 +1,4 @@
-//! Replaying one sample: the same stages over a stream of one path, looked at after every bounce.
+//! Replaying one sample: the same stages over a stream that begins with one path, looked at after every bounce.
 
 use std::ops::ControlFlow;
 

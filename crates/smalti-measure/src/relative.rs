@@ -14,7 +14,7 @@
 //!   them: a rare event that belongs to this pixel, or one in as many pixels as there are. In the first case the error is
 //!   that of x, in the second it has to be taken relative to what the other batches say. Such pixels are **uncertified**:
 //!   the lower end takes the first, the upper end the second, and once the difference is a large part there is no upper
-//!   end.
+//!   end. Two batches can only be told from the others where there are four.
 
 use smalti_core::film::{BATCHES, Counts, Pixel, Tile};
 
@@ -56,7 +56,7 @@ pub(crate) struct Sums {
     squares: f64,
     /// Squares of what the jackknife changes.
     changes: f64,
-    /// What is to be added if the brightest batch of each uncertified pixel was chance.
+    /// What is to be added if the brightest batch, or the two brightest, of each uncertified pixel were chance.
     doubt: f64,
     uncertified: usize,
 }
@@ -140,9 +140,10 @@ impl Sums {
             let is_dominated = |left_out: &usize| {
                 terms.dominated[*left_out][channels.clone()].iter().any(|ratio| *ratio > DOMINATED[*left_out])
             };
-            if let Some(left_out) = (0..2).find(is_dominated) {
+            let doubts = (0..2).filter(is_dominated).map(|left_out| of(&terms.without[left_out]) - error);
+            if let Some(doubt) = doubts.reduce(f64::max) {
                 self.uncertified += 1;
-                self.doubt += of(&terms.without[left_out]) - error;
+                self.doubt += doubt;
             }
         }
     }

@@ -27,7 +27,8 @@ pub struct ErrorStatement {
     pub relative_error_low: f64,
     /// Upper end of its interval.
     pub relative_error_high: Option<f64>,
-    /// Pixels of which a quarter or half of the samples is much brighter than the rest: nobody can say yet whether that is chance.
+    /// Pixels of which a quarter or half of the samples is much brighter than the rest: nobody can say yet whether that is
+    /// chance.
     pub uncertified_pixels: usize,
 }
 
@@ -137,6 +138,31 @@ mod tests {
             assert_eq!(statement.relative_error_high, None);
             assert!(statement.relmse_low < 1e4 / (99.0 * 20.0));
         }
+    }
+
+    /// Two batches of four, or one of three, are as doubtful as one of four; two of three are not told from the rest.
+    #[test]
+    fn two_bright_batches_are_doubted_too() {
+        for (rounds, bright, uncertified) in [(4, &[1, 2][..], 1), (4, &[0, 1, 2][..], 0), (3, &[1][..], 1)] {
+            let level = |i: usize, k: usize| if i == 50 && bright.contains(&k) { 400.0 } else { 0.0 };
+            let used = |k: usize| if k < rounds { 1.0 } else { 0.0 };
+            let batches = |i: usize| [0, 1, 2, 3].map(|k| used(k) * (1.0 + 0.01 * ((i + k) % 5) as f64 + level(i, k)));
+            let mut film = film(99, 20, batches);
+            film.tiles[0].counts = Counts::of(rounds as u32 * ROUND);
+            let statement = error_statement(&film).unwrap();
+            assert_eq!(statement.uncertified_pixels, uncertified, "{rounds} rounds, {bright:?}: {statement:?}");
+            assert_eq!(statement.relmse_high.is_none(), uncertified == 1);
+        }
+    }
+
+    /// The more uneven pixel is not the less doubtful one because one of its batches is doubted alone.
+    #[test]
+    fn doubts_grow_with_what_is_uneven() {
+        let upper = |bright: [f64; 4]| {
+            let batches = |i: usize| if i == 7 { bright } else { [0, 1, 2, 3].map(|k| 4.0 + ((i + k) % 3) as f64) };
+            error_statement(&film(200, 200, batches)).unwrap().relmse_high.unwrap_or(f64::INFINITY)
+        };
+        assert!(upper([10.0, 6.0, 0.01, 0.01]) >= upper([8.0, 8.0, 0.01, 0.01]));
     }
 
     #[test]

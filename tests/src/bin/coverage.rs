@@ -7,9 +7,10 @@
 //! Prints a line of CSV for each scene and integrator. The truth is the mean of as many other renders: by `auto` for
 //! `path` and `auto`, by the integrator itself for `photon` and `whitted`, which leave light out or have a bias of their
 //! own in every render. Where photon radii put a bias into an image that its statement names, the truth may be above the
-//! interval by the upper end of that, squares added; `noise` counts without it. With `--films` the estimates of all renders
-//! are kept in a folder and taken from there the next time, so that another statement can be judged without rendering
-//! again.
+//! interval by the upper end of that, squares added; `noise` counts without it. (What all renders share of that bias is in
+//! the truth as well; what differs from seed to seed, as radii follow photons sent ahead, is not.) With `--films` the
+//! estimates of all renders are kept in a folder and taken from there the next time, so that another statement can be
+//! judged without rendering again.
 
 use std::fs;
 use std::path::PathBuf;
@@ -89,6 +90,8 @@ struct Truth {
     mean: Vec<[f64; 3]>,
     /// Variance of that mean.
     noise: Vec<[f64; 3]>,
+    /// Mean over pixels and channels.
+    brightness: f64,
 }
 
 impl Cell<'_> {
@@ -99,7 +102,9 @@ impl Cell<'_> {
             let (film, bias) = self.film(self.integrator, seed)?;
             let stated = error_statement(&film).context("it takes 32 samples a pixel")?;
             let truths = self.errors(&film, &truth);
-            outcomes[0].count(truths[0], relmse(&stated), |noise| noise + bias * bias, bias * bias);
+            // A squared bias relative to r² + 0.01 m² is at most so much larger relative to r² + 0.01.
+            let squared = bias * bias * truth.brightness.max(1.0).powi(2);
+            outcomes[0].count(truths[0], relmse(&stated), |noise| noise + squared, squared);
             outcomes[1].count(truths[1], relative_error(&stated), |noise| (noise * noise + bias * bias).sqrt(), bias);
         }
         for (metric, outcome) in ["relmse", "relative_error"].into_iter().zip(outcomes) {
@@ -128,16 +133,20 @@ impl Cell<'_> {
             std::array::from_fn(|c| (square[c] - sum[c] * sum[c]).max(0.0) / (seeds - 1.0))
         };
         let noise = sums.iter().zip(&squares).map(variance).collect();
-        Ok(Truth { mean: sums, noise })
+        let brightness = sums.as_flattened().iter().sum::<f64>() / (3 * sums.len()) as f64;
+        Ok(Truth { mean: sums, noise, brightness })
     }
 
     /// The film of a render, a kept one or a new one, and its bias by photon radii at most, relative.
     fn film(&self, integrator: Integrator, seed: u64) -> Result<(Film, f64)> {
         let Some(folder) = &self.arguments.films else { return self.render(integrator, seed) };
         let Arguments { spp, side, .. } = *self.arguments;
-        let file = folder.join(format!("{}-{}-{spp}-{side}-{seed}.film", self.scene, integrator.name()));
+        let file = folder.join(format!("{}-{}-{spp}-{side}-{seed}.batches", self.scene, integrator.name()));
         if file.exists() {
-            return Ok(unpacked(&fs::read(file)?, side, spp));
+            let bytes = fs::read(&file)?;
+            let expected = size_of::<f32>() * (1 + 3 * BATCHES * (side * side) as usize);
+            anyhow::ensure!(bytes.len() == expected, "{}: is not of this size", file.display());
+            return Ok(unpacked(&bytes, side, spp));
         }
         let (made, bias) = self.render(integrator, seed)?;
         fs::create_dir_all(folder)?;
@@ -159,14 +168,13 @@ impl Cell<'_> {
     /// True relmse and relative error, freed of the noise that the truth has of its own.
     fn errors(&self, film: &Film, truth: &Truth) -> [f64; 2] {
         let count = (3 * truth.mean.len()) as f64;
-        let mean = truth.mean.as_flattened().iter().sum::<f64>() / count;
         let image = pixels(film);
         let error = |floor: f64| {
             let of_channel = |x: f64, r: f64, v: f64| ((x - r) * (x - r) - v) / (r * r + floor);
             let pixels = image.iter().zip(&truth.mean).zip(&truth.noise);
             pixels.map(|((x, r), v)| (0..3).map(|c| of_channel(x[c], r[c], v[c])).sum::<f64>()).sum::<f64>() / count
         };
-        [error(0.01), error(0.01 * mean * mean).max(0.0).sqrt()]
+        [error(0.01), error(0.01 * truth.brightness * truth.brightness).max(0.0).sqrt()]
     }
 }
 

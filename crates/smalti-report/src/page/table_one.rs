@@ -40,8 +40,8 @@ pub(super) fn section(study: &Study, findings: &[Finding]) -> Markup {
             }
             p.note {
                 "The report: Larsson and Voith, Monte Carlo Ray Tracing and Photon Mapping, Linköping University 2023; one thread of an "
-                "AMD Ryzen 7 6800H. smalti: this machine, all of its threads, medians with 95 % intervals (ranges of two "
-                "repetitions). The report states no error."
+                "AMD Ryzen 7 6800H. smalti: this machine, all of its threads; medians, and the 95 % interval of the geometric "
+                "mean (of two repetitions the two). The report states no error."
             }
         }
     }

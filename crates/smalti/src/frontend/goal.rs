@@ -39,8 +39,8 @@ impl Goal {
     pub fn left(&self, tally: &Tally, setup: Duration) -> Option<(Duration, Duration)> {
         let deadline = self.time.map(|time| time.saturating_sub(setup + tally.elapsed));
         let work = self.work(tally).and_then(|(least, most)| {
-            let (earliest, _) = tally.pace.remaining(least)?;
-            Some((earliest, tally.pace.remaining(most)?.1))
+            let (earliest, _) = tally.pace.remaining(least, tally.elapsed)?;
+            Some((earliest, tally.pace.remaining(most, tally.elapsed)?.1))
         });
         match (work, deadline) {
             // Without another end the deadline is the end.

@@ -28,9 +28,9 @@ impl Pace {
         }
     }
 
-    /// When the rest of `total` will be done, counted from the last mark: by the quickest and the slowest of the pace
+    /// When the rest of `total` will be done, counted from the time `at`: by the quickest and the slowest of the pace
     /// overall, over the last twenty seconds and over the last five. `None` while too little is known.
-    pub fn remaining(&self, total: u64) -> Option<(Duration, Duration)> {
+    pub fn remaining(&self, total: u64, at: Duration) -> Option<(Duration, Duration)> {
         let &(now, done) = self.marks.back().filter(|last| last.0 >= LEAST)?;
         let recent = self.marks.iter().find(|mark| mark.0 + Duration::from_secs(5) >= now);
         let since = [Some(&(Duration::ZERO, 0)), self.marks.front(), recent];
@@ -38,7 +38,8 @@ impl Pace {
         let rest = total.saturating_sub(done) as f64;
         let fastest = rates.clone().fold(0.0, f64::max);
         let slowest = rates.fold(f64::INFINITY, f64::min);
-        let time = |rate: f64| Duration::try_from_secs_f64(rest / rate).ok();
+        let since_mark = at.saturating_sub(now);
+        let time = |rate: f64| Some(Duration::try_from_secs_f64(rest / rate).ok()?.saturating_sub(since_mark));
         Some((time(fastest)?, time(slowest)?))
     }
 }
@@ -69,7 +70,7 @@ mod tests {
 
     #[test]
     fn a_steady_pace_is_a_narrow_range() {
-        let (low, high) = pace(|at| (at * 100.0) as u64, 30).remaining(10_000).unwrap();
+        let (low, high) = pace(|at| (at * 100.0) as u64, 30).remaining(10_000, seconds(30.0)).unwrap();
         assert!(
             (low.as_secs_f64() - 70.0).abs() < 0.01 && (high.as_secs_f64() - 70.0).abs() < 0.01,
             "{low:?} {high:?}"
@@ -80,7 +81,7 @@ mod tests {
     fn a_pace_that_halved_is_a_wide_one() {
         // 100 a second for 10 s, then 50 a second for 10 s: 1500 in 20 s, 75 a second overall.
         let slowing = |at: f64| (at.min(10.0) * 100.0 + (at - 10.0).max(0.0) * 50.0) as u64;
-        let (low, high) = pace(slowing, 20).remaining(3000).unwrap();
+        let (low, high) = pace(slowing, 20).remaining(3000, seconds(20.0)).unwrap();
         assert!(
             (low.as_secs_f64() - 20.0).abs() < 0.01 && (high.as_secs_f64() - 30.0).abs() < 0.01,
             "{low:?} {high:?}"
@@ -91,7 +92,7 @@ mod tests {
     #[test]
     fn photons_between_samples_are_foreseen() {
         let round = |at: f64| 1600.0 * (at.floor() + ((at.fract() - 0.6) / 0.4).max(0.0));
-        let (low, high) = pace(|at| round(at) as u64, 20).remaining(80 * 1600).unwrap();
+        let (low, high) = pace(|at| round(at) as u64, 20).remaining(80 * 1600, seconds(20.0)).unwrap();
         let middle = (low + high).as_secs_f64() / 2.0;
         assert!((middle / 60.0 - 1.0).abs() < 0.2, "{low:?} {high:?}");
         // The worst moment: photons are on their way.
@@ -99,22 +100,31 @@ mod tests {
         for step in 0..=82 {
             late.note(seconds(f64::from(step) / 4.0), round(f64::from(step) / 4.0) as u64);
         }
-        let (low, high) = late.remaining(80 * 1600).unwrap();
+        let (low, high) = late.remaining(80 * 1600, seconds(20.5)).unwrap();
         assert!(((low + high).as_secs_f64() / 2.0 / 59.5 - 1.0).abs() < 0.2, "{low:?} {high:?}");
     }
 
     #[test]
+    fn time_goes_on_after_the_last_mark() {
+        let (low, high) = pace(|at| (at * 100.0) as u64, 30).remaining(10_000, seconds(31.0)).unwrap();
+        assert!(
+            (low.as_secs_f64() - 69.0).abs() < 0.01 && (high.as_secs_f64() - 69.0).abs() < 0.01,
+            "{low:?} {high:?}"
+        );
+    }
+
+    #[test]
     fn nothing_is_invented() {
-        assert_eq!(Pace::default().remaining(10), None);
-        assert_eq!(pace(|_| 0, 9).remaining(10), None);
+        assert_eq!(Pace::default().remaining(10, seconds(9.0)), None);
+        assert_eq!(pace(|_| 0, 9).remaining(10, seconds(9.0)), None);
         let mut early = Pace::default();
         early.note(seconds(0.4), 5);
-        assert_eq!(early.remaining(10), None);
+        assert_eq!(early.remaining(10, seconds(0.4)), None);
     }
 
     #[test]
     fn what_is_done_takes_no_time() {
-        assert_eq!(pace(|at| at as u64, 9).remaining(9), Some((Duration::ZERO, Duration::ZERO)));
+        assert_eq!(pace(|at| at as u64, 9).remaining(9, seconds(9.0)), Some((Duration::ZERO, Duration::ZERO)));
     }
 
     #[test]

@@ -84,7 +84,8 @@ impl Tally {
             Event::PhotonsEmitted { photons, .. } => self.photons = Some((0, *photons)),
             Event::PhotonsStored { .. } => self.photons = None,
             Event::SampleRejected(_) => {}
-            Event::PassFinished { samples, foreseen, error, .. } => {
+            Event::PassFinished { samples, foreseen, elapsed, error, .. } => {
+                self.elapsed = self.elapsed.max(*elapsed);
                 self.foresee(*samples, *foreseen);
                 self.error = error.map(|error| (error, *samples)).or(self.error);
             }

@@ -40,10 +40,12 @@ The folder keeps:
     mean_red, mean_green, mean_blue
   arms.csv     a line for each arm:
     name, label, group, then every knob by the name of its flag, width, height, runs
-    seconds, relmse, relative_error medians; _low and _high: the 95 % interval from three
-                                    repetitions on, else the least and the most
-    efficiency                      1 / (relmse x seconds), the median
-    on_front                        whether no other arm is as fast and as accurate";
+    seconds, relmse, relative_error medians; _low and _high: the 95 % interval of the geometric
+                                    mean from three repetitions on (none at or below 0), else the
+                                    least and the most
+    efficiency                      1 / (relmse x seconds), the median; empty if one is not above 0
+    on_front                        whether no other arm of its size is as fast and as accurate,
+                                    and better in one of the two";
 
 /// The presets.
 #[derive(Debug, Subcommand)]

@@ -79,10 +79,12 @@ impl Folder {
     /// # Errors
     /// A study with another question, or what is not a study of this format; another process works on it.
     pub fn open(&self, question: &Question, fresh: bool) -> Result<Option<Study>, Failure> {
+        if self.path.is_dir() {
+            self.hold()?;
+        }
         if !self.file(RECORD).is_file() {
             return Ok(None);
         }
-        self.hold()?;
         let there = self.read();
         if fresh {
             there.iter().for_each(|study| self.clear(study));

@@ -163,6 +163,14 @@ mod tests {
             (value(1, "label"), value(1, "spp"), value(1, "seconds")),
             ("path, 4 spp".into(), "4".into(), "1.2".into())
         );
+        // Three repetitions have an interval, which is not their range of 1 to 3.
+        let ends = ["seconds_low", "seconds", "seconds_high"].map(|name| value(1, name).parse::<f64>().unwrap());
+        assert!(ends[0] < 1.0 && ends[1] == 1.2 && ends[2] > 3.0, "{ends:?}");
+        assert!((value(1, "relmse").parse::<f64>().unwrap() - 0.04).abs() < 1e-15);
+        assert_eq!(
+            (value(1, "relative_error_high"), value(1, "on_front")),
+            (value(1, "relative_error_low"), "true".into())
+        );
         assert_eq!(
             (value(1, "runs"), value(2, "runs"), value(1, "photons")),
             ("3".into(), String::new(), String::new())
