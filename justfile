@@ -47,7 +47,7 @@ coverage_of := "cargo run --release --quiet --package smalti-tests --bin coverag
 coverage *FLAGS:
     {{coverage_of}} --size 160 --spp 128 {{FLAGS}} scenes/hexroom.toml scenes/hexroom-caustic.toml
     {{coverage_of}} --size 200 --spp 64 {{FLAGS}} scenes/cornell.toml scenes/furnace.toml
-    {{coverage_of}} --size 128 --spp 64 {{FLAGS}} scenes/blob.toml
+    {{coverage_of}} --size 96 --spp 64 {{FLAGS}} scenes/blob.toml
 
 # Put each known mistake in and see that a test notices (about half an hour)
 mutants *NAMES:

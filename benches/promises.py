@@ -92,12 +92,13 @@ def shown(scene, flags, seed):
     return left, end - at
 
 def case_eta():
-    for flags in (["--spp", "400", "--shadow-rays", "1"], ["--target-error", "4%", "--shadow-rays", "1"], ["--target-error", "4%", "--shadow-rays", "1", "--adaptive", "on"], ["--time", "6s"]):
+    for flags in (["--spp", "1000", "--shadow-rays", "1"], ["--target-error", "2%", "--shadow-rays", "1"], ["--target-error", "2%", "--shadow-rays", "1", "--adaptive", "on"], ["--time", "6s"]):
         for scene in scenes:
             runs = [shown(scene, ["--size", "300x300", *flags], seed) for seed in range(a.runs)]
             said = [(left, truth) for left, truth in runs if left]
             right = sum(abs(sum(left) / 2 / truth - 1) <= 0.2 for left, truth in said); inside = sum(left[0] * 0.98 <= truth <= left[1] * 1.02 for left, truth in said)
-            print(f"{scene} {' '.join(flags)}: {right} of {len(runs)} within 20 %, {inside} inside of the range (2 % more), {len(runs) - len(said)} said nothing; a run takes {statistics.median(t for _, t in runs) / 0.75:.1f} s", flush=True)
+            middle = statistics.median([sum(left) / 2 / truth for left, truth in said] or [float("nan")])
+            print(f"{scene} {' '.join(flags)}: {right} of {len(runs)} within 20 % (median {middle:.2f} of the truth), {inside} inside of the range (2 % more), {len(runs) - len(said)} said nothing; a run takes {statistics.median(t for _, t in runs) / 0.75:.1f} s", flush=True)
 
 def case_adaptive():
     cases = [*((s, "auto", a.size) for s in scenes), *((s, "path", a.size) for s in scenes if s == "hexroom-caustic"), ("cornell", "auto", "200x100")]

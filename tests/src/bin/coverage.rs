@@ -103,7 +103,8 @@ impl Cell<'_> {
             let stated = error_statement(&film).context("it takes 32 samples a pixel")?;
             let truths = self.errors(&film, &truth);
             // A squared bias relative to r² + 0.01 m² is at most so much larger relative to r² + 0.01.
-            let squared = bias * bias * truth.brightness.max(1.0).powi(2);
+            let scale = truth.brightness.max(1.0);
+            let squared = bias * bias * scale * scale;
             outcomes[0].count(truths[0], relmse(&stated), |noise| noise + squared, squared);
             outcomes[1].count(truths[1], relative_error(&stated), |noise| (noise * noise + bias * bias).sqrt(), bias);
         }

@@ -178,7 +178,7 @@ mod tests {
         assert_eq!(above[1], " ".repeat(64));
         assert_eq!(above[33], "0 ▕████████        ▏   45.0 ms   10.0 Mrays/s  tile 6 of 16");
         assert_eq!(above[34..], ["1 waiting"]);
-        assert_eq!(text, "50 %  1 of 64 spp  0.08 Mrays/s  error 2.1 % at 1 spp  20 s left");
+        assert_eq!(text, "50 %  1 of 64 spp  0.08 Mrays/s  error 2.1 % at 1 spp  18-22 s left");
     }
 
     #[test]
@@ -186,10 +186,10 @@ mod tests {
         let tally = fixture::half_way(2);
         let texts = [60, 50, 40, 28, 12, 4].map(|columns| status(&fixture::title(), &tally, columns));
         let expected = [
-            "50 %  0.08 Mrays/s  error 2.1 % at 1 spp  20 s left",
-            "50 %  0.08 Mrays/s  20 s left",
-            "50 %  0.08 Mrays/s  20 s left",
-            "50 %  20 s left",
+            "50 %  0.08 Mrays/s  error 2.1 % at 1 spp  18-22 s left",
+            "50 %  0.08 Mrays/s  18-22 s left",
+            "50 %  0.08 Mrays/s  18-22 s left",
+            "50 %  18-22 s left",
             "50 %",
             "50 %",
         ];

@@ -7,6 +7,9 @@ use std::time::Duration;
 const MEMORY: Duration = Duration::from_secs(20);
 /// Two marks are at least this far apart.
 const STEP: Duration = Duration::from_millis(250);
+/// The pace of what is to come may be this much quicker or slower than that of what was, by the ratio: a quarter into 24
+/// renders of seconds, what was left was 3 to 6 % less than foreseen.
+const SPREAD: f64 = 1.1;
 /// Less than this says nothing.
 const LEAST: Duration = Duration::from_millis(500);
 
@@ -28,8 +31,9 @@ impl Pace {
         }
     }
 
-    /// When the rest of `total` will be done, counted from the time `at`: by the quickest and the slowest of the pace
-    /// overall, over the last twenty seconds and over the last five. `None` while too little is known.
+    /// When the rest of `total` will be done, counted from the time `at`: somewhat before and after what the quickest and the
+    /// slowest say of the pace overall, over the last twenty seconds and over the last five. `None` while too little is
+    /// known.
     pub fn remaining(&self, total: u64, at: Duration) -> Option<(Duration, Duration)> {
         let &(now, done) = self.marks.back().filter(|last| last.0 >= LEAST)?;
         let recent = self.marks.iter().find(|mark| mark.0 + Duration::from_secs(5) >= now);
@@ -40,7 +44,7 @@ impl Pace {
         let slowest = rates.fold(f64::INFINITY, f64::min);
         let since_mark = at.saturating_sub(now);
         let time = |rate: f64| Some(Duration::try_from_secs_f64(rest / rate).ok()?.saturating_sub(since_mark));
-        Some((time(fastest)?, time(slowest)?))
+        Some((time(fastest * SPREAD)?, time(slowest / SPREAD)?))
     }
 }
 
@@ -68,24 +72,22 @@ mod tests {
         pace
     }
 
+    fn assert_near((low, high): (Duration, Duration), expected: (f64, f64)) {
+        let off = [low.as_secs_f64() - expected.0, high.as_secs_f64() - expected.1];
+        assert!(off.iter().all(|off| off.abs() < 0.01), "{low:?} {high:?} instead of {expected:?}");
+    }
+
     #[test]
     fn a_steady_pace_is_a_narrow_range() {
-        let (low, high) = pace(|at| (at * 100.0) as u64, 30).remaining(10_000, seconds(30.0)).unwrap();
-        assert!(
-            (low.as_secs_f64() - 70.0).abs() < 0.01 && (high.as_secs_f64() - 70.0).abs() < 0.01,
-            "{low:?} {high:?}"
-        );
+        let left = pace(|at| (at * 100.0) as u64, 30).remaining(10_000, seconds(30.0)).unwrap();
+        assert_near(left, (70.0 / SPREAD, 70.0 * SPREAD));
     }
 
     #[test]
     fn a_pace_that_halved_is_a_wide_one() {
         // 100 a second for 10 s, then 50 a second for 10 s: 1500 in 20 s, 75 a second overall.
         let slowing = |at: f64| (at.min(10.0) * 100.0 + (at - 10.0).max(0.0) * 50.0) as u64;
-        let (low, high) = pace(slowing, 20).remaining(3000, seconds(20.0)).unwrap();
-        assert!(
-            (low.as_secs_f64() - 20.0).abs() < 0.01 && (high.as_secs_f64() - 30.0).abs() < 0.01,
-            "{low:?} {high:?}"
-        );
+        assert_near(pace(slowing, 20).remaining(3000, seconds(20.0)).unwrap(), (20.0 / SPREAD, 30.0 * SPREAD));
     }
 
     /// Rounds of a second, of which photons take the first 0.6 and 16 samples of 100 pixels the rest: 80 rounds.
@@ -106,11 +108,8 @@ mod tests {
 
     #[test]
     fn time_goes_on_after_the_last_mark() {
-        let (low, high) = pace(|at| (at * 100.0) as u64, 30).remaining(10_000, seconds(31.0)).unwrap();
-        assert!(
-            (low.as_secs_f64() - 69.0).abs() < 0.01 && (high.as_secs_f64() - 69.0).abs() < 0.01,
-            "{low:?} {high:?}"
-        );
+        let left = pace(|at| (at * 100.0) as u64, 30).remaining(10_000, seconds(31.0)).unwrap();
+        assert_near(left, (70.0 / SPREAD - 1.0, 70.0 * SPREAD - 1.0));
     }
 
     #[test]
