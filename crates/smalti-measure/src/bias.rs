@@ -6,7 +6,7 @@
 //! and the product of two independent estimates has the square of the bias as its mean.
 
 use serde::Serialize;
-use smalti_core::film::Shifted;
+use smalti_core::film::{Film, Shifted};
 
 use crate::compare::FLOOR;
 
@@ -28,8 +28,13 @@ pub struct BiasStatement {
     pub brightness: f64,
 }
 
-/// The bias of an image by the shifts of its pixels, in rows of `width`. `None` where nothing is known.
-pub fn bias_statement(pixels: &[Shifted], width: u32) -> Option<BiasStatement> {
+/// The bias of the image that `film` develops into. `None` where nothing is known.
+pub fn bias_statement(film: &Film) -> Option<BiasStatement> {
+    of_pixels(&film.shifts()?, film.area.width)
+}
+
+/// The same by the shifts of the pixels, in rows of `width`.
+fn of_pixels(pixels: &[Shifted], width: u32) -> Option<BiasStatement> {
     let count = (3 * pixels.len()) as f64;
     let mean = pixels.iter().flat_map(|pixel| pixel.mean).sum::<f64>() / count;
     let blocks = blocks(pixels, width.max(1) as usize, FLOOR * mean * mean);
@@ -105,7 +110,7 @@ mod tests {
     #[test]
     fn a_bias_is_found_under_noise_much_larger() {
         let alternating = |index: usize| if index.is_multiple_of(2) { 0.01 } else { -0.01 };
-        let found = bias_statement(&image(alternating, 0.02), 256).unwrap();
+        let found = of_pixels(&image(alternating, 0.02), 256).unwrap();
         let truth = 0.01 / 1.01f64.sqrt();
         assert!((found.relative_bias / truth - 1.0).abs() < 0.1, "{found:?}");
         assert!(found.relative_bias_high > found.relative_bias && found.relative_bias_high < 1.3 * truth, "{found:?}");
@@ -114,27 +119,27 @@ mod tests {
 
     #[test]
     fn noise_alone_is_no_bias() {
-        let found = bias_statement(&image(|_| 0.0, 0.02), 256).unwrap();
+        let found = of_pixels(&image(|_| 0.0, 0.02), 256).unwrap();
         assert!(found.relative_bias < 0.002 && found.relative_bias_high < 0.004, "{found:?}");
     }
 
     #[test]
     fn what_darkens_everything_is_told_with_its_sign() {
-        let found = bias_statement(&image(|_| -0.02, 0.0), 256).unwrap();
+        let found = of_pixels(&image(|_| -0.02, 0.0), 256).unwrap();
         assert!((found.brightness + 0.02).abs() < 1e-12, "{found:?}");
     }
 
     #[test]
     fn small_images_have_an_upper_end_too() {
-        let found = bias_statement(&image(|_| 0.01, 0.005)[..24 * 16], 24).unwrap();
+        let found = of_pixels(&image(|_| 0.01, 0.005)[..24 * 16], 24).unwrap();
         assert!(found.relative_bias_high > found.relative_bias && found.relative_bias > 0.005, "{found:?}");
-        assert_eq!(bias_statement(&image(|_| 0.01, 0.005)[..1], 1), None);
+        assert_eq!(of_pixels(&image(|_| 0.01, 0.005)[..1], 1), None);
     }
 
     #[test]
     fn nothing_known_is_not_stated() {
-        assert_eq!(bias_statement(&[], 1), None);
+        assert_eq!(of_pixels(&[], 1), None);
         let black = Shifted { mean: [0.0; 3], halves: [[0.0; 3]; 2] };
-        assert_eq!(bias_statement(&[black; 4], 2), None);
+        assert_eq!(of_pixels(&[black; 4], 2), None);
     }
 }

@@ -114,7 +114,7 @@ fn closing(area: Rect) -> Duration {
 fn error_at_most(film: &Film, by: u32) -> Option<f64> {
     let film = film.downsampled(by);
     let error = error_statement::of(&film, 1)?;
-    let bias = film.shifts().and_then(|shifts| smalti_measure::bias_statement(&shifts, film.area.width));
+    let bias = smalti_measure::bias_statement(&film);
     at_most(Some(&error), bias.as_ref())
 }
 

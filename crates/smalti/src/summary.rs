@@ -120,7 +120,7 @@ pub struct Developed {
 /// Develops a film; `by` × `by` of its pixels become one of the image.
 pub fn develop(film: &Film, by: u32) -> Developed {
     let film = film.downsampled(by);
-    let bias = || film.shifts().and_then(|shifts| smalti_measure::bias_statement(&shifts, film.area.width));
+    let bias = || smalti_measure::bias_statement(&film);
     let (error, (bias, image)) = rayon::join(|| error_statement::of(&film, 1), || (bias(), film.develop()));
     Developed { image, error, bias, samples: film.samples() }
 }

@@ -162,7 +162,7 @@ impl Cell<'_> {
         let renderer = pool.install(|| Renderer::new(self.world, settings, Level::available()[0]))?;
         let film = Film::new(renderer.settings().area(), 32);
         let film = render(&renderer, film, &pool, &Cancel::default(), None)?.film;
-        let bias = film.shifts().and_then(|shifts| bias_statement(&shifts, side));
+        let bias = bias_statement(&film);
         Ok((film, bias.map_or(0.0, |bias| bias.relative_bias_high.max(bias.relative_bias))))
     }
 

@@ -1,6 +1,5 @@
-//! A smooth dielectric boundary: reflected or refracted by chance ([`run`], photons, and where no
-//! light can be hit), or both as a tree ([`split`],
-//! whitted), or both where both matter and else by chance ([`fork`], paths).
+//! A smooth dielectric boundary: reflected or refracted by chance ([`run`], photons, and where no light can be hit), or
+//! both as a tree ([`split`], whitted), or both where both matter and else by chance ([`fork`], paths).
 
 use super::{DIRECTION, Scattered, Stream, THROUGHPUT, mirror, surface};
 use crate::bsdf::fresnel::{Boundary, boundary, reflectance};
@@ -39,8 +38,8 @@ pub fn run<L: Lanes>(
 pub const FORK: f32 = 0.01;
 
 /// Sends paths on along both ways where both carry enough: of a plan with photons, which have most of what comes by
-/// glass after a diffuse bounce, only on the first specular vertices from the camera. The others go one way by chance. Both ways have the
-/// same random numbers. All reflections come before all refractions, as in [`split`].
+/// glass after a diffuse bounce, only on the first specular vertices from the camera. The others go one way by chance.
+/// Both ways have the same random numbers. All reflections come before all refractions, as in [`split`].
 #[inline(always)]
 pub fn fork<L: Lanes>(
     l: L,

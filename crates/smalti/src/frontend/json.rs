@@ -47,11 +47,7 @@ impl<W: Write> Json<W> {
 
 impl<W: Write> View for Json<W> {
     fn hear(&mut self, event: &Event, tally: &Tally) {
-        let mut object = object(event, &self.title);
-        if let Event::PassFinished { .. } = event {
-            object["left_seconds"] = left(&self.title, tally);
-        }
-        self.lines += &object.to_string();
+        self.lines += &object(event, &self.title, tally).to_string();
         self.lines.push('\n');
     }
 
@@ -64,7 +60,7 @@ impl<W: Write> View for Json<W> {
     }
 }
 
-fn object(event: &Event, title: &Title) -> Value {
+fn object(event: &Event, title: &Title, tally: &Tally) -> Value {
     match event {
         Event::Started { area, tiles, from, until, samples, .. } => json!({
             "event": "started", "scene": title.scene, "area": place(*area), "spp": until,
@@ -89,7 +85,7 @@ fn object(event: &Event, title: &Title) -> Value {
         }),
         Event::PassFinished { pass, samples, foreseen, elapsed, error } => json!({
             "event": "pass_finished", "pass": pass, "spp": samples, "seconds": elapsed.as_secs_f64(),
-            "relative_error": error, "foreseen_spp": foreseen,
+            "relative_error": error, "foreseen_spp": foreseen, "left_seconds": left(title, tally),
         }),
         Event::Finished { interrupted, timing } => finished(*interrupted, timing),
     }
