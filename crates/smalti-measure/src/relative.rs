@@ -13,8 +13,8 @@
 //! - Where one batch is much brighter than the others together, or two are, nobody can say what the pixel is without
 //!   them: a rare event that belongs to this pixel, or one in as many pixels as there are. In the first case the error is
 //!   that of x, in the second it has to be taken relative to what the other batches say. Such pixels are **uncertified**:
-//!   the lower end takes the first, the upper end the second, and once the difference is a large part there is no upper
-//!   end. Two batches can only be told from the others where there are four.
+//!   the lower end takes the first, the upper end the second, and where they are too far apart there is no upper end. Two
+//!   batches can only be told from the others where there are four.
 
 use smalti_core::film::{BATCHES, Counts, Pixel, Tile};
 
@@ -27,8 +27,8 @@ use crate::interval::ratio_95;
 /// both; 10 in the place of 6 finds none of them.
 const DOMINATED: [f64; 2] = [3.0, 6.0];
 
-/// The largest part of the error that may hang on uncertified pixels.
-const OPEN: f64 = 0.5;
+/// An interval whose ends are so far apart, in squares, says nothing: there is no upper end then.
+const WIDEST: f64 = 100.0;
 
 /// Pixels that are computed at a time.
 const AT_ONCE: usize = 4;
@@ -86,20 +86,20 @@ impl Sums {
         }
         // Where the jackknife leaves nothing it has gone too far.
         let error = self.error.max(self.plain / 2.0);
-        let [low, high] = self.interval(batches);
-        let closed = batches > 2 && self.doubt <= OPEN * error;
         let doubt = self.doubt.max(0.0);
+        let (low, high) = self.interval(batches);
+        let (low, high) = (error * low, high.map(|high| (error + doubt) * high));
         let found = Relative {
-            value: if closed { error + doubt / 2.0 } else { error } / count,
-            low: error * low.unwrap_or(0.0) / count,
-            high: high.filter(|_| closed).map(|high| (error + doubt) * high / count),
+            value: (error * (error + doubt)).sqrt() / count,
+            low: low / count,
+            high: high.filter(|high| batches > 2 && *high <= WIDEST * low).map(|high| high / count),
             uncertified: self.uncertified,
         };
         (found.value.is_finite() && found.low.is_finite()).then_some(found)
     }
 
     /// The interval of the ratio of the true error to the estimated one. Channels are taken to go together.
-    fn interval(&self, batches: usize) -> [Option<f64>; 2] {
+    fn interval(&self, batches: usize) -> (f64, Option<f64>) {
         let freedom = (batches - 1) as f64;
         let total = self.plain * self.plain;
         // The mean of t² is not the square of the mean but (1 + 2 / f) times that.
@@ -107,8 +107,7 @@ impl Sums {
         let below = above / freedom;
         let variance = 2.0 * (above + below) / total;
         let certain = variance / (variance + self.changes / total);
-        let (low, high) = ratio_95(certain * total / above, certain * total / below);
-        [Some(low), high]
+        ratio_95(certain * total / above, certain * total / below)
     }
 }
 

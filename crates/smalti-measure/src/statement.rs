@@ -10,8 +10,9 @@ use crate::relative::{Sums, sums};
 /// The error of one image against the truth, with 95 % intervals: for this image, not for renders like it.
 ///
 /// The upper ends are `None` where they cannot be known: too few rounds, or pixels whose statistics cannot be trusted
-/// carry a notable part of the error. The statement is then a lower bound. Noise only: a bias (a depth limit, a photon
-/// radius) and light that no sample met are not in it. The names of the fields are a promise: summaries carry them.
+/// carry most of the error, so that the ends would be far apart. The statement is then a lower bound. Noise only: a bias
+/// (a depth limit, a photon radius) and light that no sample met are not in it. The names of the fields are a promise:
+/// summaries carry them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ErrorStatement {
     /// Mean over pixels and channels of (x − r)² / (r² + 0.01), r the truth.

@@ -193,8 +193,9 @@ fn two_rounds_are_a_lower_bound() {
     }
 }
 
+/// The interval grows wide, and where that would say nothing there is no upper end.
 #[test]
-fn heavy_tails_are_flagged_and_leave_a_lower_bound() {
+fn heavy_tails_are_covered_or_left_open() {
     for (name, noise) in [
         ("log-normal", Noise::LogNormal(2.0)),
         ("one sample in 100", Noise::Rare(0.01)),
@@ -202,8 +203,8 @@ fn heavy_tails_are_flagged_and_leave_a_lower_bound() {
         ("infinite variance", Noise::Pareto(1.5)),
     ] {
         for outcome in simulate(noise, Scene::Room, 4, true) {
-            assert!(outcome.open >= IMAGES * 99 / 100, "{name}: {outcome:?}");
-            assert!(outcome.below <= IMAGES / 40 && outcome.above == 0, "{name}: {outcome:?}");
+            assert!(outcome.below + outcome.above <= IMAGES / 40, "{name}: {outcome:?}");
+            assert!(name != "one sample in 1000" || outcome.open >= IMAGES * 99 / 100, "{name}: {outcome:?}");
         }
     }
 }

@@ -21,13 +21,22 @@ pub struct Goal<'a> {
 pub struct Target<'a> {
     /// The error that is small enough.
     pub error: f64,
-    /// What the error is at most; `None` while nobody can say. Asked at numbers of samples that depend on its answers
-    /// alone, between passes; nobody renders meanwhile.
-    pub at_most: BoundOf<'a>,
+    /// What the error is; `None` while nobody can say. Asked at numbers of samples that depend on its answers alone,
+    /// between passes; nobody renders meanwhile.
+    pub judge: JudgeOf<'a>,
 }
 
-/// What the error of a film is at most; `None` while nobody can say.
-pub type BoundOf<'a> = Box<dyn Fn(&Film) -> Option<f64> + Send + Sync + 'a>;
+/// The error of a film.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Judgement {
+    /// What it seems to be.
+    pub error: f64,
+    /// What it is at most.
+    pub at_most: f64,
+}
+
+/// Judges the error of a film; `None` while nobody can say what it is at most.
+pub type JudgeOf<'a> = Box<dyn Fn(&Film) -> Option<Judgement> + Send + Sync + 'a>;
 
 /// For each tile of a film what a single sample of each of its pixels would leave of squared error.
 pub type NoiseOf<'a> = Box<dyn Fn(&Film) -> Vec<f64> + Send + Sync + 'a>;

@@ -24,7 +24,7 @@ pub use allot::SIDE as ADAPTIVE_TILE;
 pub use cancel::Cancel;
 pub use course::MOST_SAMPLES;
 pub use event::{ErrorOf, Event, Watch};
-pub use goal::{BoundOf, Goal, NoiseOf, Stopped, Target};
+pub use goal::{Goal, JudgeOf, Judgement, NoiseOf, Stopped, Target};
 pub use look::FIRST_LOOK;
 pub use outcome::{Balance, Outcome, Panicked, Photons, Rejections, Timing};
 pub use pool::{PoolError, pool};

@@ -6,7 +6,7 @@ use rayon::ThreadPool;
 use smalti_core::film::Film;
 use smalti_core::settings::{Rect, Settings};
 use smalti_measure::{BiasStatement, ErrorStatement};
-use smalti_scheduler::{ADAPTIVE_TILE, Goal, MOST_SAMPLES, Stopped, Target};
+use smalti_scheduler::{ADAPTIVE_TILE, Goal, Judgement, MOST_SAMPLES, Stopped, Target};
 
 use crate::args::BudgetArgs;
 use crate::describe::percent;
@@ -62,12 +62,12 @@ impl Budget {
 
     /// The goal of a render of `settings`, `by` × `by` of whose pixels become one, in a process that began at `start`.
     pub fn goal<'a>(&self, settings: &Settings, by: u32, pool: &'a ThreadPool, start: Instant) -> Goal<'a> {
-        let at_most = move |film: &Film| pool.install(|| error_at_most(film, by));
+        let judge = move |film: &Film| pool.install(|| judgement(film, by));
         let noise = move |film: &Film| pool.install(|| smalti_measure::noise(film));
         Goal {
             spp: Some(self.most_samples(settings)),
             deadline: self.time.map(|time| start + time.saturating_sub(closing(settings.area()))),
-            target: self.error.map(|error| Target { error, at_most: Box::new(at_most) }),
+            target: self.error.map(|error| Target { error, judge: Box::new(judge) }),
             noise: settings.adaptive.then_some(Box::new(noise) as _),
         }
     }
@@ -110,12 +110,15 @@ fn closing(area: Rect) -> Duration {
     CLOSING + CLOSING_A_PIXEL.saturating_mul(u32::try_from(area.pixels()).unwrap_or(u32::MAX))
 }
 
-/// What the relative error of the image that `film` develops into is at most.
-fn error_at_most(film: &Film, by: u32) -> Option<f64> {
+/// The relative error of the image that `film` develops into.
+fn judgement(film: &Film, by: u32) -> Option<Judgement> {
     let film = film.downsampled(by);
-    let error = error_statement::of(&film, 1)?;
+    let noise = error_statement::of(&film, 1)?;
     let bias = smalti_measure::bias_statement(&film);
-    at_most(Some(&error), bias.as_ref())
+    let at_most = at_most(Some(&noise), bias.as_ref())?;
+    let bias = bias.map_or(0.0, |bias| bias.relative_bias);
+    let error = (noise.relative_error * noise.relative_error + bias * bias).sqrt();
+    Some(Judgement { error, at_most })
 }
 
 /// What a relative error is at most, noise and the bias by photon radii together; `None` while nobody can say.
