@@ -26,7 +26,10 @@ pub fn trace(renderer: &Renderer, pass: &Pass, count: u32, round: u32) -> Traced
     let batches: Vec<Traced> = pass
         .sub_map(round, 0)
         .into_par_iter()
-        .map_init(PhotonWorkspace::default, |workspace, batch| renderer.trace_photons(&pass, batch, workspace))
+        .map_init(
+            || PhotonWorkspace::new(renderer.scene()),
+            |workspace, batch| renderer.trace_photons(&pass, batch, workspace),
+        )
         .collect();
     let mut all = Traced::default();
     for batch in &batches {

@@ -17,7 +17,7 @@ pub use crate::replay::Vertex;
 use crate::scene::{Scene, World, compile};
 use crate::settings::{Integrator, Settings};
 use crate::stream::{
-    Columns, MOST_SLOTS, Slots, Stream, dielectric, diffuse, direct, emission, environment, gather, generate,
+    Columns, MOST_SLOTS, Slots, Stream, absorb, dielectric, diffuse, direct, emission, environment, gather, generate,
     intersect, mirror, sort, surface,
 };
 
@@ -289,6 +289,10 @@ impl Renderer {
         let (scene, settings, token) = (&self.scene, &self.settings, self.token);
         match stage {
             Stage::Intersect => dispatch!(token, l => intersect::run(l, &self.plan.everything, rays)),
+            Stage::Absorb => {
+                let Some(media) = &scene.media else { return };
+                dispatch!(token, l => absorb::run(l, media, rays));
+            }
             Stage::Sort => self.sort(ends, workspace),
             Stage::Emission => {
                 let in_map = self.plan.photons.as_ref().map(|photons| &photons.in_map[..]);
@@ -303,7 +307,8 @@ impl Renderer {
                 let Plan { occluders, parts, .. } = &self.plan;
                 let surfaces = self.plan.photons.as_ref().map(|photons| &photons.surfaces);
                 let decided = maps.visibility.as_deref().zip(surfaces);
-                let context = direct::Context { lights: &scene.lights, occluders, parts, settings, weighed, decided };
+                let (lights, media) = (&scene.lights, scene.media.as_ref());
+                let context = direct::Context { lights, occluders, parts, settings, weighed, media, decided };
                 dispatch!(token, l => direct::run(l, &context, bounce, diffuse, shadows, slots));
             }
             Stage::Caustic => {

@@ -12,7 +12,7 @@ const CHUNK: usize = 1 << 16;
 ///
 /// Hashed are, little-endian, with -0 as +0: for each list its length as u64 and its items (polygons, spheres, meshes,
 /// point lights, environment, cameras). Lengths of inner lists and indices are u64 and u32, all numbers f64; an option
-/// is a byte 0 or 1 and its value; a surface's material is a byte for the kind (lambert 0, mirror 1, dielectric 2) and
+/// is a byte 0 or 1 and its value; a surface's material is a byte for the kind (lambert 0, mirror 1, dielectric 2, one that absorbs 3) and
 /// its numbers.
 pub fn of(world: &World) -> String {
     let mut sink = Sink { hasher: Xxh3::new(), buffer: Vec::with_capacity(2 * CHUNK) };
@@ -68,9 +68,12 @@ impl Sink {
                 self.bytes(&[1]);
                 self.rgb(reflectance);
             }
-            Material::Dielectric { ior } => {
-                self.bytes(&[2]);
+            Material::Dielectric { ior, absorption } => {
+                self.bytes(&[if material.absorbs() { 3 } else { 2 }]);
                 self.number(ior);
+                if material.absorbs() {
+                    self.rgb(absorption);
+                }
             }
         }
         self.maybe(radiance);
@@ -128,7 +131,7 @@ mod tests {
 
     #[test]
     fn only_what_can_be_seen_changes_the_hash() {
-        let glass = Material::Dielectric { ior: 1.5 };
+        let glass = Material::clear(1.5);
         let white = Material::Lambert { albedo: [0.8; 3] };
         let plain = of(&world(vec![glass], 0, 0.0));
         assert_eq!(plain.len(), 32);

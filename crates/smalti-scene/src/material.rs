@@ -12,7 +12,7 @@ const KINDS: &[Key] = &[
 ];
 const LAMBERT: &[Key] = &[key("albedo", "[0.8, 0.8, 0.8]")];
 const MIRROR: &[Key] = &[key("reflectance", "[1, 1, 1]")];
-const DIELECTRIC: &[Key] = &[key("ior", "1.5")];
+const DIELECTRIC: &[Key] = &[key("ior", "1.5"), key("absorption", "[0.5, 0.2, 0.1]")];
 
 /// The materials of a scene, in file order; behind them those that lights are made of.
 pub struct Palette<'d> {
@@ -83,8 +83,14 @@ fn of_kind(kind: Node) -> Result<Material> {
     Ok(match kind.name {
         "lambert" => Material::Lambert { albedo: open(LAMBERT)?.need("albedo")?.triple(Bounds::FRACTION)? },
         "mirror" => Material::Mirror { reflectance: open(MIRROR)?.need("reflectance")?.triple(Bounds::FRACTION)? },
-        _ => Material::Dielectric { ior: open(DIELECTRIC)?.need("ior")?.number(Bounds::IOR)? },
+        _ => dielectric(&open(DIELECTRIC)?)?,
     })
+}
+
+fn dielectric(section: &Section) -> Result<Material> {
+    let ior = section.need("ior")?.number(Bounds::IOR)?;
+    let absorption = section.find("absorption").map(|node| node.triple(Bounds::LIGHT)).transpose()?;
+    Ok(Material::Dielectric { ior, absorption: absorption.unwrap_or_default() })
 }
 
 #[cfg(test)]

@@ -55,12 +55,12 @@ pub fn read<'d>(document: &'d Spanned<DeTable<'d>>, folder: &Path) -> Result<(Wo
     Ok((world, settings, notes))
 }
 
-/// Removes surfaces that cannot be seen: a dielectric with an index of exactly 1 that emits nothing.
+/// Removes surfaces that cannot be seen: a dielectric with an index of exactly 1 that neither absorbs nor emits.
 fn remove_clear(world: &mut World, names: &[&str], notes: &mut Vec<String>) {
     let World { materials, polygons, spheres, meshes, .. } = world;
     let mut removed = vec![0usize; materials.len()];
     let mut keep = |material: usize, radiance: Option<Rgb>| {
-        let clear = materials[material] == Material::Dielectric { ior: 1.0 } && radiance.is_none();
+        let clear = materials[material] == Material::clear(1.0) && radiance.is_none();
         removed[material] += usize::from(clear);
         !clear
     };

@@ -58,7 +58,7 @@ fn hexroom() {
     assert_eq!(world.polygons[8].radiance, Some([20.0; 3]));
     assert_eq!(world.materials[world.polygons[8].material], Material::Lambert { albedo: [0.0; 3] });
     assert_eq!(world.materials[world.spheres[0].material], Material::Mirror { reflectance: [1.0; 3] });
-    assert_eq!(world.materials[world.spheres[1].material], Material::Dielectric { ior: 1.5 });
+    assert_eq!(world.materials[world.spheres[1].material], Material::clear(1.5));
     assert_near(volume(&triangles(&world.meshes[0])), 2.16 * 1.25 * 2.04 / 3.0);
     assert_near(world.cameras[0].fov, std::f64::consts::FRAC_PI_2);
 }
@@ -69,7 +69,7 @@ fn hexroom_caustic_has_the_same_power() {
     assert_is_the_room(&caustic);
     let power = |world: &World| area(&world.polygons[8]).length() * world.polygons[8].radiance.unwrap()[0];
     assert_near(power(&caustic), power(&plain));
-    assert!(caustic.spheres.iter().all(|s| caustic.materials[s.material] == Material::Dielectric { ior: 1.5 }));
+    assert!(caustic.spheres.iter().all(|s| caustic.materials[s.material] == Material::clear(1.5)));
     assert_eq!(caustic.meshes[0].vertices, plain.meshes[0].vertices);
     let places = |world: &World| world.spheres.iter().map(|s| (s.centre, s.radius)).collect::<Vec<_>>();
     assert_eq!(places(&caustic), places(&plain));

@@ -40,8 +40,14 @@ pub fn of(world: &World) -> Vec<Light> {
     lights
 }
 
-/// An estimate of the irradiance at a point from all `lights`.
-pub fn irradiance(world: &World, lights: &[Light], at: DVec3, facing: DVec3, random: &mut Random) -> DVec3 {
+/// An estimate of the irradiance from all `lights` at a point and a normal, through what absorbs so much a metre.
+pub fn irradiance(
+    world: &World,
+    lights: &[Light],
+    (at, facing): (DVec3, DVec3),
+    absorption: DVec3,
+    random: &mut Random,
+) -> DVec3 {
     if lights.is_empty() {
         return DVec3::ZERO;
     }
@@ -51,7 +57,13 @@ pub fn irradiance(world: &World, lights: &[Light], at: DVec3, facing: DVec3, ran
     if cosine <= 0.0 || intensity == DVec3::ZERO || blocked(world, at, place) {
         return DVec3::ZERO;
     }
-    intensity * cosine * lights.len() as f64 / (reach.length_squared() * density)
+    let left = transmittance(absorption, reach.length());
+    left * intensity * cosine * lights.len() as f64 / (reach.length_squared() * density)
+}
+
+/// What is left of light after so much of something that absorbs.
+pub fn transmittance(absorption: DVec3, distance: f64) -> DVec3 {
+    DVec3::from_array(absorption.to_array().map(|each| libm::exp(-each * distance)))
 }
 
 /// A place on the light, its density by area, and the intensity a unit of area in the direction of `seen_from`.

@@ -29,12 +29,16 @@ struct Scattering {
 /// An estimate of the radiance that arrives along `ray`.
 pub fn radiance(world: &World, lights: &[Light], finds: Finds, mut ray: Ray, random: &mut Random) -> DVec3 {
     let (mut sum, mut throughput, mut emission_counts) = (DVec3::ZERO, DVec3::ONE, true);
+    let mut inside = balls_around(world, ray.origin);
     while let Some(hit) = nearest(world, &ray) {
+        let absorption = inside.last().copied().unwrap_or_default();
+        throughput *= light::transmittance(absorption, hit.point.distance(ray.origin));
         if emission_counts {
             sum += throughput * hit.emitted(&ray);
         }
         if let (Material::Lambert { albedo }, Finds::ByShadowRay) = (hit.material, finds) {
-            let irradiance = light::irradiance(world, lights, hit.point, hit.facing(&ray), random);
+            let place = (hit.point, hit.facing(&ray));
+            let irradiance = light::irradiance(world, lights, place, absorption, random);
             sum += throughput * DVec3::from_array(albedo) * FRAC_1_PI * irradiance;
         }
         let scattering = scatter(&hit, &ray, random);
@@ -47,10 +51,30 @@ pub fn radiance(world: &World, lights: &[Light], finds: Finds, mut ray: Ray, ran
             return sum;
         }
         throughput *= scattering.weight / chance;
+        if let Material::Dielectric { absorption, .. } = hit.material {
+            let enters = hit.normal.dot(scattering.direction) < 0.0;
+            match (hit.normal.dot(ray.direction) < 0.0, enters) {
+                (true, true) => inside.push(DVec3::from_array(absorption)),
+                (false, false) => drop(inside.pop()),
+                _ => {}
+            }
+        }
         emission_counts = finds == Finds::ByChance || !scattering.diffuse;
         ray = Ray { origin: hit.point, direction: scattering.direction };
     }
     sum + throughput * DVec3::from_array(world.environment.unwrap_or_default())
+}
+
+/// What the dielectric balls around a place absorb, from the largest to the smallest. (Other dielectrics have nothing in
+/// them at the start of a path.)
+fn balls_around(world: &World, place: DVec3) -> Vec<DVec3> {
+    let mut balls: Vec<_> = world.spheres.iter().filter(|ball| ball.centre.distance(place) < ball.radius).collect();
+    balls.sort_by(|a, b| b.radius.total_cmp(&a.radius));
+    let absorption = |material: &Material| match material {
+        Material::Dielectric { absorption, .. } => Some(DVec3::from_array(*absorption)),
+        _ => None,
+    };
+    balls.iter().filter_map(|ball| absorption(&world.materials[ball.material])).collect()
 }
 
 fn scatter(hit: &Hit, ray: &Ray, random: &mut Random) -> Scattering {
@@ -64,7 +88,7 @@ fn scatter(hit: &Hit, ray: &Ray, random: &mut Random) -> Scattering {
         Material::Mirror { reflectance } => {
             Scattering { direction: mirrored, weight: DVec3::from_array(reflectance), diffuse: false }
         }
-        Material::Dielectric { ior } => {
+        Material::Dielectric { ior, .. } => {
             let (n1, n2) = sides(hit, ray, ior);
             let chance = reflectance(-ray.direction.dot(normal), n1, n2);
             match refracted(ray.direction, normal, n1, n2).filter(|_| random.unit() >= chance) {

@@ -65,7 +65,7 @@ fn follow(world: &World, (mut ray, mut flux): (Ray, DVec3), random: &mut Random)
                 flux *= DVec3::from_array(reflectance);
                 reflected(ray.direction, hit.normal)
             }
-            Material::Dielectric { ior } => cross(&hit, &ray, ior, random),
+            Material::Dielectric { ior, .. } => cross(&hit, &ray, ior, random),
         };
         ray = Ray { origin: hit.point, direction };
     }

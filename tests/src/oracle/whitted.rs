@@ -1,4 +1,4 @@
-//! Whitted's algorithm (1980) as a recursion.
+//! Whitted's algorithm (1980) as a recursion, where nothing absorbs.
 
 use core::f64::consts::FRAC_1_PI;
 
@@ -31,7 +31,7 @@ pub fn radiance(world: &World, lights: &[Light], ray: Ray, weight: DVec3, random
     let mirrored = Some(reflected(ray.direction, normal));
     let scattered = match hit.material {
         Material::Mirror { reflectance } => follow(mirrored, DVec3::from_array(reflectance)),
-        Material::Dielectric { ior } => {
+        Material::Dielectric { ior, .. } => {
             let (n1, n2) = sides(&hit, &ray, ior);
             let share = reflectance(-ray.direction.dot(normal), n1, n2);
             let through = refracted(ray.direction, normal, n1, n2);
@@ -41,7 +41,7 @@ pub fn radiance(world: &World, lights: &[Light], ray: Ray, weight: DVec3, random
         Material::Lambert { albedo } => {
             let overhead = Ray { origin: hit.point, direction: random.cosine_about(normal) };
             let from_sky = if nearest(world, &overhead).is_none() { sky } else { DVec3::ZERO };
-            let from_lights = light::irradiance(world, lights, hit.point, normal, random) * FRAC_1_PI;
+            let from_lights = light::irradiance(world, lights, (hit.point, normal), DVec3::ZERO, random) * FRAC_1_PI;
             DVec3::from_array(albedo) * (from_sky + from_lights)
         }
     };

@@ -37,6 +37,13 @@ fn camera_in_glass() {
 }
 
 #[test]
+fn tinted_glass() {
+    for eye in [at(0.2, -3.0, 0.6), at(-0.1, -0.45, -0.1)] {
+        assert_as_the_oracle("tinted", &scenes::tinted_glass(eye), Finds::ByShadowRay, 384, 0.015);
+    }
+}
+
+#[test]
 fn under_the_sky() {
     assert_as_the_oracle("sky", &scenes::under_the_sky(), Finds::ByChance, 256, 0.005);
 }

@@ -119,11 +119,17 @@ fn photons_and_paths_inside_glass() {
     assert_all_agree("in glass", &scenes::camera_in_glass(), 0.03, 48, (0.005, 0.005));
 }
 
+#[test]
+fn photons_and_paths_in_tinted_glass() {
+    assert_all_agree("tinted", &scenes::tinted_glass(at(0.2, -3.0, 0.6)), 0.04, 48, (0.005, 0.005));
+    assert_all_agree("in tinted", &scenes::tinted_glass(at(-0.1, -0.45, -0.1)), 0.04, 48, (0.005, 0.005));
+}
+
 /// A glass ball and a bent mirror above the floor, under a square lamp: the floor comes first.
 fn above_the_floor() -> World {
     let mut world = World::default();
     let white = material(&mut world, grey(0.5));
-    let (shiny, clear) = (material(&mut world, mirror(0.7)), material(&mut world, Material::Dielectric { ior: 1.5 }));
+    let (shiny, clear) = (material(&mut world, mirror(0.7)), material(&mut world, Material::clear(1.5)));
     quad(&mut world, DVec3::ZERO, (DVec3::X * 1.5, DVec3::Y * 1.5), white, None);
     quad(&mut world, at(0.0, 0.0, 2.0), (DVec3::Y * 0.2, DVec3::X * 0.2), white, Some(5.0));
     sphere(&mut world, at(0.0, 0.0, 0.8), 0.5, clear, None);
@@ -190,7 +196,7 @@ fn mean_irradiance(renderer: &Renderer, photons: &Photons, radius: f64) -> f64 {
 fn caustics_in_a_room_have_the_oracles_flux() {
     let mut world = World::default();
     let wall = material(&mut world, grey(0.5));
-    let (shiny, clear) = (material(&mut world, mirror(0.9)), material(&mut world, Material::Dielectric { ior: 1.6 }));
+    let (shiny, clear) = (material(&mut world, mirror(0.9)), material(&mut world, Material::clear(1.6)));
     closed_box(&mut world, DVec3::ZERO, at(1.0, 1.0, 1.0), wall, None);
     sphere(&mut world, at(0.2, 0.3, 0.6), 0.15, wall, Some(4.0));
     sphere(&mut world, at(0.4, 0.3, 0.1), 0.3, clear, None);

@@ -12,7 +12,7 @@ fn coloured(albedo: [f64; 3]) -> Material {
 }
 
 fn glass() -> Material {
-    Material::Dielectric { ior: 1.5 }
+    Material::clear(1.5)
 }
 
 /// A closed room with a diffuse, a mirroring and a glass ball under a square lamp.
@@ -80,7 +80,7 @@ pub fn camera_in_glass() -> World {
 pub fn under_the_sky() -> World {
     let mut world = World { environment: Some([1.0, 0.8, 0.6]), ..World::default() };
     let ground = material(&mut world, coloured([0.5, 0.5, 0.8]));
-    let clear = material(&mut world, Material::Dielectric { ior: 1.8 });
+    let clear = material(&mut world, Material::clear(1.8));
     quad(&mut world, DVec3::ZERO, (DVec3::X * 2.0, DVec3::Y * 2.0), ground, None);
     sphere(&mut world, at(-0.5, 0.0, 0.5), 0.5, ground, None);
     sphere(&mut world, at(0.6, -0.2, 0.4), 0.4, clear, None);
@@ -100,4 +100,37 @@ pub fn glowing_room() -> World {
     sphere(&mut world, at(-0.4, 0.2, -0.5), 0.4, clear, None);
     camera(&mut world, at(0.0, -0.9, 0.2), at(0.0, 0.5, -0.2), 1.4);
     world
+}
+
+fn tinted(ior: f64, absorption: [f64; 3]) -> Material {
+    Material::Dielectric { ior, absorption }
+}
+
+/// A ball of tinted glass with a lamp, a diffuse ball and a bubble in it; a block of another, and of a third that bends no
+/// light, in a lit room. The camera is in the room, or in the glass.
+pub fn tinted_glass(eye: DVec3) -> World {
+    let mut world = World { environment: Some([0.3, 0.4, 0.5]), ..World::default() };
+    let wall = material(&mut world, coloured([0.7, 0.6, 0.5]));
+    let amber = material(&mut world, tinted(1.5, [0.3, 0.9, 2.5]));
+    let bubble = material(&mut world, glass_in_glass());
+    let blue = material(&mut world, tinted(1.3, [3.0, 1.0, 0.2]));
+    let smoke = material(&mut world, tinted(1.0, [1.5; 3]));
+    quad(&mut world, at(0.0, 0.0, -1.0), (DVec3::X * 2.0, DVec3::Y * 2.0), wall, None);
+    quad(&mut world, at(0.0, 1.5, 0.0), (DVec3::X * 2.0, DVec3::Z), wall, None);
+    quad(&mut world, at(0.5, 0.6, 1.5), (DVec3::Y * 0.6, DVec3::X * 0.6), wall, Some(4.0));
+    sphere(&mut world, at(0.0, 0.0, -0.2), 0.7, amber, None);
+    sphere(&mut world, at(0.2, 0.1, -0.4), 0.2, wall, None);
+    sphere(&mut world, at(-0.25, -0.1, 0.0), 0.15, wall, Some(3.0));
+    sphere(&mut world, at(0.3, -0.3, 0.0), 0.2, bubble, None);
+    let (corners, faces) = globe(5, 4, |_, _| 0.35);
+    mesh(&mut world, (corners.into_iter().map(|v| v + at(-1.0, 0.2, -0.6)).collect(), faces), blue, None);
+    sphere(&mut world, at(1.1, 0.3, -0.6), 0.3, smoke, None);
+    let target = if eye.length() < 1.0 { at(0.2, 1.0, -0.4) } else { at(0.0, 0.0, -0.2) };
+    camera(&mut world, eye, target, 0.9);
+    world
+}
+
+/// A vacuum as seen from glass.
+fn glass_in_glass() -> Material {
+    Material::clear(1.0 / 1.5)
 }

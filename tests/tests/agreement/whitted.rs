@@ -18,7 +18,7 @@ fn tree(world: &World, spp: u32) -> Rendered {
 fn specular() -> World {
     let mut world = World::default();
     let ground = material(&mut world, Material::Lambert { albedo: [0.7, 0.5, 0.3] });
-    let (shiny, clear) = (material(&mut world, mirror(0.85)), material(&mut world, Material::Dielectric { ior: 1.5 }));
+    let (shiny, clear) = (material(&mut world, mirror(0.85)), material(&mut world, Material::clear(1.5)));
     let lamp = material(&mut world, grey(0.2));
     quad(&mut world, DVec3::ZERO, (DVec3::X * 3.0, DVec3::Y * 3.0), ground, None);
     quad(&mut world, at(0.0, 2.5, 1.5), (DVec3::X * 2.5, DVec3::Z * 1.5), shiny, None);

@@ -97,7 +97,7 @@ fn a_pane_lets_through_what_its_inner_reflections_leave() {
 
 fn behind_a_pane(angle: f64) -> World {
     let mut world = World::default();
-    let glass = material(&mut world, Material::Dielectric { ior: 1.5 });
+    let glass = material(&mut world, Material::clear(1.5));
     let black = material(&mut world, grey(0.0));
     quad(&mut world, at(0.0, 0.0, 0.0), (DVec3::X * 50.0, DVec3::Y * 50.0), glass, None);
     quad(&mut world, at(0.0, 0.0, -0.1), (DVec3::Y * 50.0, DVec3::X * 50.0), glass, None);

@@ -15,7 +15,7 @@ use smalti_tests::estimate::{render, settings};
 /// A glass ball in an environment of radiance 1, seen from `eye`.
 fn ball_in_the_sky(ior: f64, eye: DVec3) -> World {
     let mut world = World { environment: Some([1.0; 3]), ..World::default() };
-    let glass = material(&mut world, Material::Dielectric { ior });
+    let glass = material(&mut world, Material::clear(ior));
     sphere(&mut world, DVec3::ZERO, 1.0, glass, None);
     camera(&mut world, eye, eye * 0.5 + at(0.01, 0.0, 0.0), 1.0);
     world
@@ -38,6 +38,37 @@ fn inside_glass_radiance_is_n_squared_times_that_outside() {
     let mut world = ball_in_the_sky(1.5, DVec3::ZERO);
     world.cameras[0].look_at = DVec3::X;
     render(&world, &settings(24, 24, 64)).assert_every_pixel("camera in glass", 2.25, 1e-5);
+}
+
+/// From the middle of a ball every ray goes straight out: what is reflected goes through the middle again.
+#[test]
+fn glass_that_absorbs_leaves_what_beer_and_lambert_say() {
+    for (ior, radius, absorption) in [
+        (1.0, 1.0, [0.0, 1.0, 10.0]),
+        (1.0, 3e4, [1e-3, 80.0 / 3e4, 1e4 / 3e4]),
+        (1.5, 2.5e-7, [1e6, 4e6, 2e7]),
+        (0.8, 7.0, [0.01, 0.1, 1.0]),
+    ] {
+        let mut world = ball_in_the_sky(ior, DVec3::ZERO);
+        world.materials[0] = Material::Dielectric { ior, absorption };
+        world.spheres[0].radius = radius;
+        world.cameras[0].look_at = DVec3::X;
+        let reflected = ((ior - 1.0) / (ior + 1.0)) * ((ior - 1.0) / (ior + 1.0));
+        let expected = absorption.map(|each| {
+            let once = libm::exp(-each * radius);
+            ior * ior * (1.0 - reflected) * once / (1.0 - reflected * once * once)
+        });
+        let rendered = render(&world, &settings(24, 24, 64));
+        for (channel, expected) in expected.into_iter().enumerate() {
+            // An ulp of the distance is as many of what is left as it is absorbed times; and few rays are reflected twice.
+            let tolerance = 5e-6 + 2e-2 * reflected;
+            for pixel in &rendered.image.pixels {
+                let found = f64::from(pixel[channel]);
+                let off = (found - expected).abs();
+                assert!(off <= tolerance * expected + 1e-38, "index {ior}, channel {channel}: {found}, not {expected}");
+            }
+        }
+    }
 }
 
 #[test]
@@ -79,7 +110,7 @@ fn everything() -> World {
     let mut world = World { environment: Some([0.1, 0.2, 0.3]), ..World::default() };
     let white = material(&mut world, Material::Lambert { albedo: [0.7, 0.6, 0.5] });
     let shiny = material(&mut world, mirror(0.9));
-    let glass = material(&mut world, Material::Dielectric { ior: 1.5 });
+    let glass = material(&mut world, Material::clear(1.5));
     quad(&mut world, DVec3::ZERO, (DVec3::X * 3.0, DVec3::Y * 3.0), white, None);
     quad(&mut world, at(0.3, 3.0, 1.7), (DVec3::X * 2.0, DVec3::Z), shiny, None);
     quad(&mut world, at(0.0, 0.0, 3.0), (DVec3::Y * 0.5, DVec3::X * 0.5), white, Some(8.0));
@@ -146,7 +177,7 @@ fn powers_of_two_in_radiance_scale_every_pixel_exactly() {
 fn panels(ball: bool) -> World {
     let mut world = World { environment: Some([0.25; 3]), ..World::default() };
     let black = material(&mut world, grey(0.0));
-    let clear = material(&mut world, Material::Dielectric { ior: 1.0 });
+    let clear = material(&mut world, Material::clear(1.0));
     for k in 0..5 {
         let x = 0.7 * f64::from(k) - 1.4;
         quad(&mut world, at(x, 3.0, 0.0), (DVec3::X * 0.21, DVec3::Z), black, Some(f64::from(k) + 1.0));

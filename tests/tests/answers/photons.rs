@@ -37,7 +37,7 @@ fn a_photon_mapped_furnace_shows_the_series_of_its_albedo() {
 fn room() -> World {
     let mut world = World::default();
     let wall = material(&mut world, Material::Lambert { albedo: [0.7, 0.5, 0.3] });
-    let clear = material(&mut world, Material::Dielectric { ior: 1.5 });
+    let clear = material(&mut world, Material::clear(1.5));
     closed_box(&mut world, DVec3::ZERO, at(1.0, 1.2, 1.0), wall, None);
     quad(&mut world, at(0.2, 0.1, 0.98), (DVec3::Y * 0.3, DVec3::X * 0.3), wall, Some(5.0));
     point_light(&mut world, at(-0.5, 0.4, 0.7), 0.3);

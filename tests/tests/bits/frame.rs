@@ -5,6 +5,7 @@ use smalti_core::scene::World;
 use smalti_core::settings::{Integrator, Settings};
 use smalti_image::hash;
 use smalti_scene::Loaded;
+use smalti_tests::build::thinned;
 use smalti_tests::draw::{Way, draw, load, scene_files};
 
 /// Applies `to` to every point of the world, cameras included.
@@ -27,6 +28,7 @@ fn scaled(world: &World, factor: f64) -> World {
     for light in &mut world.point_lights {
         light.intensity = light.intensity.map(|channel| channel * factor * factor);
     }
+    world.materials.iter_mut().for_each(|material| *material = thinned(*material, factor));
     world
 }
 

@@ -6,7 +6,7 @@ use glam::DVec3;
 use smalti_core::accel::{Accel, Tracer};
 use smalti_core::bsdf::fresnel::{boundary, reflectance};
 use smalti_core::geometry::Ray;
-use smalti_core::lanes::math::{sin_cos_quarter, sin_cos_turn};
+use smalti_core::lanes::math::{exp_minus, leading_bits, sin_cos_quarter, sin_cos_turn};
 use smalti_core::lanes::{One, V3};
 use smalti_core::light::table::NO_SURFACE;
 use smalti_core::sampling::warp;
@@ -29,6 +29,27 @@ fn sine_and_cosine_keep_seven_digits() {
         let (sine, cosine) = libm::sincos(TAU * f64::from(u));
         assert!((f64::from(s) - sine).abs() < 1.5e-7 && (f64::from(c) - cosine).abs() < 1.5e-7, "at {u} turns");
     }
+}
+
+/// Beer and Lambert: 4e-7 up to 80 e-foldings, and nothing left of light behind more than can be told from nothing.
+#[test]
+fn transmittance_keeps_its_digits() {
+    let of = |absorption: f64, distance: f32| {
+        let leading = leading_bits(absorption as f32);
+        exp_minus(One, (leading, (absorption - f64::from(leading)) as f32), distance)
+    };
+    for absorption in [1.0, 0.3, 1.7e-3, 12.345_678_9, 3.3e4] {
+        for k in 0..=400_000u32 {
+            let distance = (f64::from(k) / 400_000.0 * 80.0 / absorption) as f32;
+            let (found, truth) = (f64::from(of(absorption, distance)), libm::exp(-absorption * f64::from(distance)));
+            assert!((found / truth - 1.0).abs() < 4e-7, "{absorption} over {distance}: {found:e}, not {truth:e}");
+        }
+        assert_eq!(of(absorption, (1e4 / absorption) as f32), 0.0);
+        assert_eq!(of(absorption, f32::MAX), 0.0);
+        assert_eq!(of(absorption, 0.0), 1.0);
+    }
+    assert_eq!(of(0.0, f32::MAX), 1.0);
+    assert_eq!(of(f32::MAX.into(), f32::MAX), 0.0);
 }
 
 fn kernel(ior: f64, outside: bool, cosine: f32) -> f64 {

@@ -20,7 +20,7 @@ use smalti_tests::oracle::Random;
 use smalti_tests::photons::{mapper, trace};
 
 fn glass() -> Material {
-    Material::Dielectric { ior: 1.5 }
+    Material::clear(1.5)
 }
 
 /// A closed room of unlike albedos with a tinted mirror, glass and black balls.
@@ -76,10 +76,21 @@ fn assert_balanced(name: &str, account: &Account, kept: usize) {
 }
 
 /// P1.
+/// The closed world with glass that absorbs.
+fn tinted() -> World {
+    let mut world = closed();
+    for material in world.materials.iter_mut().filter(|material| matches!(material, Material::Dielectric { .. })) {
+        *material = Material::Dielectric { ior: 1.5, absorption: [0.5, 1.0, 4.0] };
+    }
+    assert!(world.materials.iter().any(Material::absorbs));
+    world
+}
+
 #[test]
 fn light_is_stored_absorbed_or_lost_to_infinity() {
     let mut ends = [[0.0; 3]; 3];
-    for (name, world) in [("closed", closed()), ("open", open()), ("small lamps", small_lamps())] {
+    for (name, world) in [("closed", closed()), ("open", open()), ("small lamps", small_lamps()), ("tinted", tinted())]
+    {
         for max_bounces in [None, Some(0), Some(1), Some(4)] {
             let renderer = mapper(&world, Settings { max_bounces, ..Settings::default() });
             let photons = renderer.plan().photons.as_ref().unwrap();

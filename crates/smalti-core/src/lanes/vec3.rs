@@ -76,6 +76,12 @@ impl<L: Lanes> V3<L> {
         self.scale(l.f(1.0) / l.sqrt(self.dot(l, self)))
     }
 
+    /// Its length.
+    #[inline(always)]
+    pub fn length(self, l: L) -> L::F {
+        l.sqrt(self.dot(l, self))
+    }
+
     /// The three, as an array.
     #[inline(always)]
     pub fn components(self) -> [L::F; 3] {

@@ -6,8 +6,9 @@ use crate::lanes::{Lanes, V3};
 use crate::light::table::{Kind, LightTable, triple};
 use crate::mutant::mutant;
 use crate::sampling::{Keys, Purpose, pair, sobol, warp};
+use crate::scene::Media;
 use crate::settings::SamplerKind;
-use crate::stream::{DIRECTION, KEY, LEAVES, ORIGIN, SLOT, Stream, THROUGHPUT};
+use crate::stream::{DIRECTION, KEY, LEAVES, MEDIUM, ORIGIN, SLOT, Stream, THROUGHPUT};
 
 /// What the stage needs to know.
 pub struct Emission<'a> {
@@ -15,6 +16,8 @@ pub struct Emission<'a> {
     pub lights: &'a LightTable,
     /// Where their photons go.
     pub aim: &'a Aim,
+    /// What they travel in, where some of it absorbs.
+    pub media: Option<&'a Media>,
     /// Where numbers come from.
     pub sampler: SamplerKind,
     /// Photons that share the flux.
@@ -40,7 +43,7 @@ pub fn run<L: Lanes>(
     photons: &mut Stream,
     Slots { power, rows }: &mut Slots,
 ) {
-    let Emission { lights, aim, sampler, emitted } = *emission;
+    let Emission { lights, aim, sampler, emitted, .. } = *emission;
     power.clear();
     power.resize(count as usize + 16, 0.0);
     rows.clear();
@@ -71,6 +74,9 @@ pub fn run<L: Lanes>(
         push.v3(ORIGIN, source.origin).v3(DIRECTION, direction).u(LEAVES, source.surface);
         push.v3(THROUGHPUT, source.radiance.scale(l.f(1.0) / brightest));
         push.u(KEY, l.u(key)).u(SLOT, (index & l.u(0xffff_0000)) | slot);
+        if let Some(media) = emission.media {
+            push.u(MEDIUM, l.gather_u(&media.lights, row));
+        }
     }
 }
 

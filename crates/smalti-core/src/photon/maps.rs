@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::kd_tree::Tree;
-use super::pass::{Pass, Traced};
+use super::pass::{Pass, PhotonWorkspace, Traced};
 use super::{Account, Batch, Map, Pilot, SUB_MAPS, Visibility, pilot};
 use crate::render::Renderer;
 
@@ -184,7 +184,7 @@ impl Renderer {
         let trace = |batch: Batch| {
             // Buffers are made once and passed on: making them takes as long as tracing a small batch.
             let free = || self.photon_workspaces.lock().unwrap_or_else(PoisonError::into_inner);
-            let mut workspace = free().pop().unwrap_or_default();
+            let mut workspace = free().pop().unwrap_or_else(|| PhotonWorkspace::new(self.scene()));
             let traced = self.trace_photons(pass, batch, &mut workspace);
             free().push(workspace);
             progress.fetch_add(batch.count.into(), Ordering::Relaxed);

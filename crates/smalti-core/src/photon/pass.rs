@@ -13,7 +13,7 @@ use crate::sampling::sampler::photon_key;
 use crate::scene::{Class, Scene};
 use crate::settings::{Fresnel, SamplerKind};
 use crate::stream::mirror::Ending;
-use crate::stream::{Columns, MOST_SLOTS, PRIM, Stream, dielectric, diffuse, intersect, mirror, sort, surface};
+use crate::stream::{Columns, MOST_SLOTS, PRIM, Stream, absorb, dielectric, diffuse, intersect, mirror, sort, surface};
 
 /// Photons of a batch: as many as camera paths go through the stages together.
 const PHOTONS: u32 = 4096;
@@ -97,9 +97,11 @@ pub struct PhotonWorkspace {
     slots: emit::Slots,
 }
 
-impl Default for PhotonWorkspace {
-    fn default() -> Self {
-        let stream = || Stream::new(PHOTONS as usize, Columns::default());
+impl PhotonWorkspace {
+    /// Buffers for photons in `scene`.
+    pub fn new(scene: &Scene) -> Self {
+        let columns = Columns { medium: scene.media.is_some(), ..Columns::default() };
+        let stream = || Stream::new(PHOTONS as usize, columns);
         Self {
             photons: stream(),
             next: stream(),
@@ -142,7 +144,9 @@ impl Renderer {
         let PhotonWorkspace { photons, slots, next, .. } = workspace;
         let Batch { kind, round, sub_map, first, count, emitted } = batch;
         let settings = self.settings();
-        let emission = Emission { lights: &self.scene().lights, aim: &pass.aim, sampler: settings.sampler, emitted };
+        let Scene { lights, media, .. } = self.scene();
+        let (media, sampler) = (media.as_ref(), settings.sampler);
+        let emission = Emission { lights, aim: &pass.aim, media, sampler, emitted };
         let key = photon_key(settings.seed, kind as u32, round, sub_map, first / SET);
         next.clear();
         dispatch!(self.token(), l => emit::run(l, &emission, (key, first % SET, count), photons, slots));
@@ -152,6 +156,7 @@ impl Renderer {
     fn photon_bounce(&self, pass: &Pass, bounce: u32, workspace: &mut PhotonWorkspace, traced: &mut Traced) {
         let (scene, token) = (self.scene(), self.token());
         dispatch!(token, l => intersect::run(l, &self.plan().everything, &mut workspace.photons));
+        self.absorb(workspace, &mut traced.account);
         self.sort_photons(workspace);
         let PhotonWorkspace { photons, next, diffuse, mirror, dielectric, escaped, slots } = workspace;
         let power = &slots.power[..];
@@ -216,6 +221,14 @@ impl Renderer {
         if !dielectric.is_empty() {
             dispatch!(token, l => dielectric::run(l, scene, (fresnel, sampler), bounce, dielectric, next));
         }
+    }
+
+    /// What media take on the way.
+    fn absorb(&self, PhotonWorkspace { photons, slots, .. }: &mut PhotonWorkspace, account: &mut Account) {
+        let Some(media) = &self.scene().media else { return };
+        let before = sum(photons, &slots.power);
+        dispatch!(self.token(), l => absorb::run(l, media, photons));
+        add(&mut account.absorbed, difference(before, sum(photons, &slots.power)));
     }
 
     fn sort_photons(&self, workspace: &mut PhotonWorkspace) {

@@ -23,6 +23,7 @@ pub fn run<L: Lanes>(l: L, scene: &Scene, hits: &Stream, next: &mut Stream) {
             leaves: hit.surface,
             pdf: l.f(0.0),
             eta: l.f(1.0),
+            medium: l.u(0),
         };
         next.scatter(l, hits, at, active, &rays);
     }

@@ -28,6 +28,8 @@ pub const LEAST_CONTRIBUTION: f32 = 1.0 / 1024.0;
 pub enum Stage {
     /// What every ray hits.
     Intersect,
+    /// What is absorbed on the way there.
+    Absorb,
     /// Hits to the streams of the stages that follow.
     Sort,
     /// Radiance of emitters that were hit.
@@ -129,7 +131,8 @@ impl Plan {
     /// A scene in which that map is empty.
     pub fn showing(scene: &Scene, settings: &Settings, show: Show) -> Result<Self, PlanError> {
         let photons = Photons::showing(scene, settings, show.map).map_err(|message| PlanError { message })?;
-        let columns = Columns { eta: scene.has(Class::Dielectric), ..Columns::default() };
+        let columns =
+            Columns { eta: scene.has(Class::Dielectric), medium: scene.media.is_some(), ..Columns::default() };
         let stages = stages_that_show(scene, settings, show);
         let plan = Self { columns, photons: Some(photons), ..Self::of(scene, settings, stages) };
         Ok(plan.reasoned(scene, settings))
@@ -206,6 +209,7 @@ fn stages(scene: &Scene, settings: &Settings, photons: Option<&Photons>) -> Vec<
     let ending = if path { Ending::Roulette(settings.sampler) } else { Ending::Threshold(LEAST_CONTRIBUTION) };
     [
         (Stage::Intersect, true),
+        (Stage::Absorb, scene.media.is_some()),
         (Stage::Sort, true),
         (Stage::Emission, !scene.lights.emitters.is_empty()),
         (Stage::Environment, scene.environment.is_some()),
@@ -227,6 +231,7 @@ fn stages_that_show(scene: &Scene, settings: &Settings, show: Show) -> Vec<Stage
     let radiance = show.quantity == Quantity::Radiance;
     [
         (Stage::Intersect, true),
+        (Stage::Absorb, scene.media.is_some()),
         (Stage::Sort, true),
         (Stage::Emission, radiance && !scene.lights.emitters.is_empty()),
         (Stage::Environment, radiance && scene.environment.is_some()),
@@ -243,5 +248,6 @@ fn stages_that_show(scene: &Scene, settings: &Settings, show: Show) -> Vec<Stage
 fn columns(scene: &Scene, settings: &Settings, photons: Option<&Photons>) -> Columns {
     let two_ways = settings.shadow_rays > 0 && !scene.lights.emitters.is_empty() && scene.has(Class::Lambert);
     let pdf = photons.is_some() || (two_ways && settings.integrator != Integrator::Whitted);
-    Columns { pdf, eta: scene.has(Class::Dielectric), marks: photons.is_some() }
+    let (eta, medium) = (scene.has(Class::Dielectric), scene.media.is_some());
+    Columns { pdf, eta, medium, marks: photons.is_some() }
 }

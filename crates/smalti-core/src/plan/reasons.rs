@@ -132,6 +132,7 @@ fn stage_reason(stage: &Stage, scene: &Scene, settings: &Settings) -> Decision {
     let rays = settings.shadow_rays;
     let (choice, reason) = match stage {
         Stage::Intersect => ("intersect", "every ray hits something or nothing".into()),
+        Stage::Absorb => ("absorb", "light gets less on its way through what absorbs".into()),
         Stage::Sort => ("sort", "one stream for each stage that follows".into()),
         Stage::Emission => ("emission", counted(scene.lights.emitters.len(), "emitting primitive")),
         Stage::Environment => ("environment", "light arrives from infinity; scattered rays find it".into()),
@@ -189,6 +190,10 @@ fn columns(plan: &Plan) -> Decision {
     if plan.columns.eta {
         names.push("refraction's n²");
         reasons.push("something refracts");
+    }
+    if plan.columns.medium {
+        names.push("medium");
+        reasons.push("something absorbs");
     }
     decision("columns", names.join(" + "), reasons.join("; "), 0)
 }

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::frame::Frame;
+use super::media::{CLEAR, Media};
 use super::world::{Camera, Material, Rgb, World};
 use super::{Class, Face, Origin, Scene, Shade, View};
 use crate::light::table::LightTable;
@@ -52,6 +53,10 @@ impl Compiler<'_> {
         }
         self.scene.lights.finish();
         self.scene.views = world.cameras.iter().map(|camera| view(&self.scene.frame, camera)).collect();
+        if let Some(media) = Media::of(world, &self.scene) {
+            self.scene.views.iter_mut().zip(&media.views).for_each(|(view, medium)| view.medium = *medium);
+            self.scene.media = Some(media);
+        }
         self.scene
     }
 
@@ -147,7 +152,7 @@ fn class_of(material: &Material) -> (Class, [f32; 3]) {
         }
         Material::Lambert { albedo } => (Class::Lambert, round(albedo)),
         Material::Mirror { reflectance } => (Class::Mirror, round(reflectance)),
-        Material::Dielectric { ior } => {
+        Material::Dielectric { ior, .. } => {
             (Class::Dielectric, [ior as f32, (1.0 / ior) as f32, ((ior - 1.0) * (ior + 1.0)) as f32])
         }
     }
@@ -164,6 +169,7 @@ fn view(frame: &Frame, camera: &Camera) -> View {
         forward: forward.as_vec3().to_array(),
         right: (right * reach).as_vec3().to_array(),
         up: (up * reach).as_vec3().to_array(),
+        medium: CLEAR,
     }
 }
 
@@ -189,6 +195,7 @@ impl Default for Scene {
             lights: LightTable::default(),
             environment: None,
             views: Vec::new(),
+            media: None,
             dropped: 0,
         }
     }

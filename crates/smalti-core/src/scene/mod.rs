@@ -5,10 +5,12 @@
 
 mod compile;
 pub mod frame;
+pub mod media;
 pub mod world;
 
 pub use compile::compile;
 pub use frame::Frame;
+pub use media::Media;
 pub use world::World;
 
 use crate::light::table::LightTable;
@@ -39,6 +41,8 @@ pub struct Scene {
     pub environment: Option<[f32; 3]>,
     /// The cameras.
     pub views: Vec<View>,
+    /// What rays travel in, where some of it absorbs.
+    pub media: Option<Media>,
     /// Primitives without area that were left out.
     pub dropped: usize,
 }
@@ -109,6 +113,8 @@ pub struct View {
     pub right: [f32; 3],
     /// Up, half the picture's height long at distance 1.
     pub up: [f32; 3],
+    /// Number of the medium that it is in.
+    pub medium: u32,
 }
 
 impl Scene {

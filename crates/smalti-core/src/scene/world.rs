@@ -50,14 +50,27 @@ pub enum Material {
         /// Fraction of the light that is reflected, per channel.
         reflectance: Rgb,
     },
-    /// Smooth boundary of a clear medium; the outside (where the normal points) is vacuum.
+    /// Smooth boundary of a medium, as seen from a vacuum: the outside is where the normal points.
     Dielectric {
         /// Index of refraction of the inside, > 0.
         ior: f64,
+        /// Absorption coefficient of the inside, m⁻¹, at least 0: of the light that goes a distance d in it the part
+        /// e^(−absorption · d) is left (Beer and Lambert).
+        absorption: Rgb,
     },
 }
 
 impl Material {
+    /// A dielectric that absorbs nothing.
+    pub const fn clear(ior: f64) -> Self {
+        Self::Dielectric { ior, absorption: [0.0; 3] }
+    }
+
+    /// Whether light that goes through it gets less.
+    pub fn absorbs(&self) -> bool {
+        matches!(self, Self::Dielectric { absorption, .. } if *absorption != [0.0; 3])
+    }
+
     /// Whether it sends all light one or two ways, and so casts caustics.
     pub fn is_specular(&self) -> bool {
         matches!(self, Self::Mirror { .. } | Self::Dielectric { .. })

@@ -1,7 +1,7 @@
 //! A smooth dielectric boundary: reflected or refracted by chance ([`run`], photons, and where no light can be hit), or
 //! both as a tree ([`split`], whitted), or both where both matter and else by chance ([`fork`], paths).
 
-use super::{DIRECTION, Scattered, Stream, THROUGHPUT, mirror, surface};
+use super::{DIRECTION, PRIM, Scattered, Stream, THROUGHPUT, mirror, surface};
 use crate::bsdf::fresnel::{Boundary, boundary, reflectance};
 use crate::lanes::{Lanes, V3};
 use crate::mutant::mutant;
@@ -24,7 +24,7 @@ pub fn run<L: Lanes>(
         let crossing = Crossing::at(l, scene, fresnel, hits, at);
         let (u, _) = pair(l, sampler, hits.keys(l, at), bounce, Purpose::Lobe);
         let reflects = l.lt(u, crossing.reflectance);
-        let rays = crossing.rays(l, reflects, hits, at, hits.v3(l, THROUGHPUT, at));
+        let rays = crossing.rays(l, scene, reflects, hits, at, hits.v3(l, THROUGHPUT, at));
         next.scatter(l, hits, at, hits.active(l, at), &rays);
     }
 }
@@ -62,7 +62,7 @@ pub fn fork<L: Lanes>(
             let share = l.select(both, shares[usize::from(!reflect)], l.f(1.0));
             let share = if mutant!("fork_without_shares") { l.f(1.0) } else { share };
             let goes = both | if reflect { reflects } else { !reflects };
-            let rays = crossing.rays(l, l.m(reflect), hits, at, throughput.scale(share));
+            let rays = crossing.rays(l, scene, l.m(reflect), hits, at, throughput.scale(share));
             next.scatter(l, hits, at, hits.active(l, at) & goes, &rays);
         }
     }
@@ -79,7 +79,7 @@ pub fn split<L: Lanes>(l: L, scene: &Scene, fresnel: Fresnel, least: f32, hits: 
             let throughput = hits.v3(l, THROUGHPUT, at).scale(crossing.shares(l)[usize::from(!reflect)]);
             let enough = hits.active(l, at) & l.le(l.f(least), throughput.max_component(l));
             if l.any(enough) {
-                next.scatter(l, hits, at, enough, &crossing.rays(l, l.m(reflect), hits, at, throughput));
+                next.scatter(l, hits, at, enough, &crossing.rays(l, scene, l.m(reflect), hits, at, throughput));
             }
         }
     }
@@ -111,9 +111,16 @@ impl<L: Lanes> Crossing<L> {
         [self.reflectance, l.f(1.0) - self.reflectance]
     }
 
+    /// What refracted rays travel in.
+    #[inline(always)]
+    fn beyond(&self, l: L, scene: &Scene, hits: &Stream, at: usize) -> L::U {
+        let Some(media) = &scene.media else { return l.u(0) };
+        media.beyond(l, hits.u(l, PRIM, at), self.hit.outside, hits.active(l, at))
+    }
+
     /// The reflected rays where `reflects`, else the refracted ones.
     #[inline(always)]
-    fn rays(&self, l: L, reflects: L::M, hits: &Stream, at: usize, throughput: V3<L>) -> Scattered<L> {
+    fn rays(&self, l: L, scene: &Scene, reflects: L::M, hits: &Stream, at: usize, throughput: V3<L>) -> Scattered<L> {
         let incoming = hits.v3(l, DIRECTION, at);
         let eta = self.boundary.eta;
         let bend = l.mul_add(eta, self.boundary.cosine, -self.boundary.cosine_refracted);
@@ -132,6 +139,7 @@ impl<L: Lanes> Crossing<L> {
             leaves: self.hit.surface,
             pdf: hits.specular_pdf(l, at),
             eta: l.select(reflects, so_far, squeezed),
+            medium: l.select_u(reflects, hits.medium(l, at), self.beyond(l, scene, hits, at)),
         }
     }
 }

@@ -24,6 +24,7 @@ pub fn run<L: Lanes>(l: L, sampler: SamplerKind, bounce: u32, vertices: &Stream,
             leaves: vertices.u(l, LEAVES, at),
             pdf: warp::cosine_hemisphere_pdf(l, local.z),
             eta: vertices.eta(l, at),
+            medium: vertices.medium(l, at),
         };
         next.scatter(l, vertices, at, vertices.active(l, at) & survives, &rays);
     }

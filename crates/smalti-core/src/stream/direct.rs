@@ -16,9 +16,11 @@ use crate::accel::{Accel, Tracer};
 use crate::geometry::Ray;
 use crate::lanes::{Lanes, Rgb, V3};
 use crate::light::{sample::sample, table::LightTable};
+use crate::mutant::mutant;
 use crate::photon::visibility::{Decided, ONE_IN};
 use crate::photon::{Surfaces, Visibility};
 use crate::sampling::{Fan, Keys, Purpose, one_of};
+use crate::scene::Media;
 use crate::settings::Settings;
 
 /// What the stage needs to know.
@@ -33,6 +35,8 @@ pub struct Context<'a> {
     pub settings: &'a Settings,
     /// Whether a scattered ray may find the same light (path), or not (whitted).
     pub weighed: bool,
+    /// What rays travel in, where some of it absorbs.
+    pub media: Option<&'a Media>,
     /// What shadow photons say of the lights, and the surfaces that they lie on.
     pub decided: Option<(&'a Visibility, &'a Surfaces)>,
 }
@@ -163,6 +167,7 @@ struct Receiver<L: Lanes> {
     /// Numbers for the place on a light.
     place: Fan<L>,
     prim: L::U,
+    medium: L::U,
 }
 
 /// One light sample of each vertex.
@@ -204,6 +209,7 @@ impl<L: Lanes> Receiver<L> {
             keys,
             bounce,
             prim: vertices.u(l, PRIM, at),
+            medium: l.select_u(vertices.active(l, at), vertices.medium(l, at), l.u(0)),
             place: Fan::new(l, sampler, keys, bounce, Purpose::LightPoint, shadow_rays),
         }
     }
@@ -257,6 +263,12 @@ impl<L: Lanes> Receiver<L> {
         let by_chance = if context.weighed { l.keep(incident.by_chance, top * l.f(FRAC_1_PI)) } else { l.f(0.0) };
         let count = l.f(shadow_rays as f32);
         let irradiance = incident.radiance.scale(top / l.mul_add(count, bottom, by_chance));
+        let irradiance = match context.media {
+            Some(media) if !mutant!("shadow_rays_not_absorbed") => {
+                irradiance * media.transmittance(l, self.medium, incident.reach.length(l))
+            }
+            _ => irradiance,
+        };
         // A light point behind the surface, or one that shows its back, has nothing to ask; nor has 0/0 or ∞/∞.
         let brightest = irradiance.max_component(l);
         let arrives = l.lt(l.f(0.0), brightest) & l.lt(brightest, l.f(f32::INFINITY));

@@ -1,7 +1,7 @@
 //! Camera rays: the samples of a batch of pixels, block after block of neighbours, so that the rays of a packet stay
 //! close together.
 
-use super::{Columns, DIRECTION, ETA, KEY, LEAVES, ORIGIN, PDF, SLOT, Stream, THROUGHPUT};
+use super::{Columns, DIRECTION, ETA, KEY, LEAVES, MEDIUM, ORIGIN, PDF, SLOT, Stream, THROUGHPUT};
 use crate::film::ROUND;
 use crate::lanes::{Lanes, V3};
 use crate::light::table::NO_SURFACE;
@@ -102,6 +102,9 @@ pub fn run<L: Lanes>(
         }
         if used.eta {
             rays.set_f(l, ETA, to, l.f(1.0));
+        }
+        if used.medium {
+            rays.set_u(l, MEDIUM, to, l.u(view.medium));
         }
     }
     rays.set_len(first + pixels.count);

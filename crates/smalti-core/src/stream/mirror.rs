@@ -38,6 +38,7 @@ pub fn run<L: Lanes>(l: L, scene: &Scene, ending: Ending, bounce: u32, hits: &St
             leaves: hit.surface,
             pdf: hits.specular_pdf(l, at),
             eta: hits.eta(l, at),
+            medium: hits.medium(l, at),
         };
         next.scatter(l, hits, at, hits.active(l, at) & survives, &rays);
     }

@@ -1,10 +1,11 @@
 //! Paths as columns, and the stages that a stream of them passes through, one file each.
 //!
-//! A unit's paths are held as a structure of arrays and go through **intersect → sort → emission, environment →
-//! surface → direct → diffuse, mirror, dielectric**, bounce by bounce, until none is left. Each stage is a short
+//! A unit's paths are held as a structure of arrays and go through **intersect → absorb → sort → emission, environment
+//! → surface → direct → diffuse, mirror, dielectric**, bounce by bounce, until none is left. Each stage is a short
 //! function over lanes that handles one material or one task for all its paths and pushes survivors to the next
 //! stream, in order. Radiance is added to the path's own slot, so no order of work can change a bit.
 
+pub mod absorb;
 pub mod dielectric;
 pub mod diffuse;
 pub mod direct;
@@ -45,7 +46,9 @@ pub const PRIM: usize = 13;
 pub const PDF: usize = 14;
 /// Product of (n_i / n_t)² over the refractions so far. Only where something refracts.
 pub const ETA: usize = 15;
-const COLUMNS: usize = 16;
+/// Number of the medium that the ray travels in. Only where something absorbs.
+pub const MEDIUM: usize = 16;
+const COLUMNS: usize = 17;
 
 /// Slots of one batch: their numbers fit the lower half of [`SLOT`].
 pub const MOST_SLOTS: usize = 1 << 16;
@@ -70,6 +73,8 @@ pub struct Columns {
     pub pdf: bool,
     /// [`ETA`].
     pub eta: bool,
+    /// [`MEDIUM`].
+    pub medium: bool,
     /// Whether [`PDF`] is negative after specular bounces that follow on a diffuse one.
     pub marks: bool,
 }
@@ -77,8 +82,10 @@ pub struct Columns {
 impl Columns {
     /// Number of columns up to the last one used.
     pub fn count(self) -> usize {
-        if self.eta {
+        if self.medium {
             COLUMNS
+        } else if self.eta {
+            ETA + 1
         } else if self.pdf {
             PDF + 1
         } else {
@@ -257,6 +264,8 @@ pub struct Scattered<L: Lanes> {
     pub pdf: L::F,
     /// Product of (n_i / n_t)² so far.
     pub eta: L::F,
+    /// What they travel in.
+    pub medium: L::U,
 }
 
 impl Stream {
@@ -273,6 +282,15 @@ impl Stream {
         if used.eta {
             push.f(ETA, rays.eta);
         }
+        if used.medium {
+            push.u(MEDIUM, rays.medium);
+        }
+    }
+
+    /// What a packet travels in; 0 where nothing absorbs.
+    #[inline(always)]
+    pub fn medium<L: Lanes>(&self, l: L, at: usize) -> L::U {
+        if self.used.medium { self.u(l, MEDIUM, at) } else { l.u(0) }
     }
 
     /// The product of (n_i / n_t)² of a packet; 1 where nothing refracts.

@@ -141,7 +141,7 @@ mod tests {
     #[test]
     fn materials_that_nothing_is_made_of_cast_no_caustics() {
         let ball = Sphere { centre: [0.0; 3].into(), radius: 1.0, material: 0, radiance: None };
-        let materials = vec![Material::Lambert { albedo: [0.5; 3] }, Material::Dielectric { ior: 1.5 }];
+        let materials = vec![Material::Lambert { albedo: [0.5; 3] }, Material::clear(1.5)];
         let world = World { materials, spheres: vec![ball], ..World::default() };
         assert!(!has_casters(&world));
         assert!(has_casters(&World { spheres: vec![Sphere { material: 1, ..ball }], ..world }));

@@ -256,7 +256,7 @@ mod tests {
         assert!(!applies("photons", &path, &world) && !applies("radius", &path, &world));
         assert!(applies("photons", &way(), &world) && applies("radius", &way(), &world));
         assert!(!applies("fresnel", &path, &world));
-        world.materials.push(Material::Dielectric { ior: 1.5 });
+        world.materials.push(Material::clear(1.5));
         assert!(applies("fresnel", &path, &world));
     }
 }
