@@ -99,6 +99,9 @@ pub enum Integrator {
 }
 
 impl Integrator {
+    /// All of them, the default first.
+    pub const ALL: [Self; 4] = [Self::Auto, Self::Path, Self::Photon, Self::Whitted];
+
     /// Whether it may use photon maps.
     pub fn asks_photons(self) -> bool {
         matches!(self, Integrator::Auto | Integrator::Photon)

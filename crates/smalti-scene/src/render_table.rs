@@ -26,7 +26,6 @@ const KEYS: &[Key] = &[
     key("radius", "0.1"),
 ];
 
-const INTEGRATORS: [Integrator; 4] = [Integrator::Auto, Integrator::Path, Integrator::Photon, Integrator::Whitted];
 const SAMPLERS: [SamplerKind; 2] = [SamplerKind::Sobol, SamplerKind::Independent];
 const FRESNELS: [Fresnel; 2] = [Fresnel::Exact, Fresnel::Schlick];
 
@@ -72,7 +71,7 @@ impl RenderTable {
         let section = Section::open(node, "`[render]`", KEYS)?;
         let size = section.read("size", size)?;
         Ok(Self {
-            integrator: section.read("integrator", |node| node.choice(&INTEGRATORS.map(|x| (x.name(), x))))?,
+            integrator: section.read("integrator", |node| node.choice(&Integrator::ALL.map(|x| (x.name(), x))))?,
             size,
             crop: section.read("crop", |node| crop(node, size))?,
             spp: section.read("spp", |node| node.count(1))?,

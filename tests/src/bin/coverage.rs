@@ -32,8 +32,6 @@ struct Arguments {
     scenes: Vec<PathBuf>,
 }
 
-const INTEGRATORS: [Integrator; 4] = [Integrator::Path, Integrator::Auto, Integrator::Photon, Integrator::Whitted];
-
 fn main() -> Result<()> {
     let arguments = Arguments::read()?;
     println!("scene,integrator,spp,renders,metric,covered,noise,below,above,open,median_ratio,truth,stated,bias");
@@ -51,7 +49,7 @@ fn main() -> Result<()> {
 impl Arguments {
     fn read() -> Result<Self> {
         let mut read =
-            Self { seeds: 200, spp: 64, side: 200, integrators: INTEGRATORS.into(), films: None, scenes: Vec::new() };
+            Self { seeds: 200, spp: 64, side: 200, integrators: Integrator::ALL.into(), films: None, scenes: Vec::new() };
         let mut words = std::env::args().skip(1);
         while let Some(word) = words.next() {
             let mut value = || words.next().with_context(|| format!("{word} needs a value"));
@@ -73,7 +71,7 @@ impl Arguments {
 }
 
 fn integrator(name: &str) -> Result<Integrator> {
-    let known = INTEGRATORS.into_iter().find(|integrator| integrator.name() == name);
+    let known = Integrator::ALL.into_iter().find(|integrator| integrator.name() == name);
     known.with_context(|| format!("no integrator is called {name}"))
 }
 

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use smalti_core::scene::World;
+use smalti_core::scene::world::Material;
 use smalti_core::settings::{Integrator, Settings};
 use smalti_image::hash;
 use smalti_scene::Loaded;
@@ -42,41 +43,50 @@ fn power_of_two(k: i64) -> f64 {
     f64::from_bits(((1023 + k) as u64) << 52)
 }
 
-/// Every scene of the repository that loads, with its own settings made small, and its file's name.
-fn scenes() -> Vec<(String, Loaded, Settings)> {
-    let files = scene_files("scenes").into_iter().chain(scene_files("tests/scenes/golden"));
+/// Every scene of the folder, with its own settings made small, and its file's name.
+fn scenes_of(folder: &str) -> Vec<(String, Loaded, Settings)> {
     let small = |path: std::path::PathBuf| {
         let loaded = load(&path);
         let settings = loaded.settings.settings();
         let settings = Settings { width: 24, height: 16, crop: None, spp: 2, ..settings };
         (path.file_name().unwrap().to_string_lossy().into_owned(), loaded, settings)
     };
-    files.map(small).collect()
+    scene_files(folder).into_iter().map(small).collect()
+}
+
+/// Every scene of the repository that loads.
+fn scenes() -> Vec<(String, Loaded, Settings)> {
+    scenes_of("scenes").into_iter().chain(scenes_of("tests/scenes/golden")).collect()
+}
+
+/// Asserts that no bit depends on the unit of length.
+fn assert_scale_free(name: &str, world: &World, settings: &Settings) {
+    let expected = hash(&draw(world, settings, Way::default()));
+    for k in [-40, -20, -1, 1, 20, 40] {
+        let factor = power_of_two(k);
+        let found = hash(&draw(&scaled(world, factor), &rescaled(settings, factor), Way::default()));
+        assert_eq!(found, expected, "{name}, {} × 2^{k}", settings.integrator.name());
+    }
 }
 
 #[test]
 fn any_power_of_two_as_unit_of_length() {
     let scenes = scenes();
-    assert!(scenes.len() >= 5);
     assert!(scenes.iter().any(|(_, loaded, _)| !loaded.world.point_lights.is_empty()), "intensities are scaled");
+    assert!(scenes.iter().any(|(_, loaded, _)| loaded.world.materials.iter().any(Material::absorbs)), "and absorption");
     for (name, Loaded { world, .. }, settings) in scenes {
-        let expected = hash(&draw(&world, &settings, Way::default()));
-        for k in [-40, -20, -1, 1, 20, 40] {
-            let factor = power_of_two(k);
-            let found = hash(&draw(&scaled(&world, factor), &rescaled(&settings, factor), Way::default()));
-            assert_eq!(found, expected, "{name} × 2^{k}");
-        }
+        assert_scale_free(&name, &world, &settings);
     }
 }
 
 #[test]
-fn any_power_of_two_with_whitted() {
-    for (name, Loaded { world, .. }, settings) in scenes() {
-        let settings = Settings { integrator: Integrator::Whitted, shadow_rays: 2, ..settings };
-        let expected = hash(&draw(&world, &settings, Way::default()));
-        for k in [-40, 1, 40] {
-            let found = hash(&draw(&scaled(&world, power_of_two(k)), &settings, Way::default()));
-            assert_eq!(found, expected, "{name} × 2^{k}");
+fn any_power_of_two_with_every_integrator() {
+    let scenes = scenes_of("scenes");
+    assert!(scenes.len() >= 7);
+    for (name, Loaded { world, .. }, settings) in scenes {
+        for integrator in Integrator::ALL {
+            let settings = Settings { integrator, shadow_rays: 2, photons: Some(20_000), ..settings.clone() };
+            assert_scale_free(&name, &world, &settings);
         }
     }
 }
