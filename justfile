@@ -49,6 +49,11 @@ coverage *FLAGS:
     {{coverage_of}} --size 200 --spp 64 {{FLAGS}} scenes/cornell.toml scenes/furnace.toml
     {{coverage_of}} --size 96 --spp 64 {{FLAGS}} scenes/blob.toml
 
+# A thousand million rays at the edges and corners of closed meshes, and as many that leave a surface: none may slip out or
+# hit it again (about ten minutes)
+rays *FLAGS:
+    cargo run --release --quiet --package smalti-tests --bin rays -- {{FLAGS}}
+
 # Put each known mistake in and see that a test notices (about half an hour)
 mutants *NAMES:
     tests/mutants.sh {{NAMES}}

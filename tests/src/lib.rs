@@ -1,8 +1,10 @@
 //! What the acceptance tests share.
 
 pub mod build;
+pub mod closed;
 pub mod draw;
 pub mod estimate;
+pub mod leaving;
 pub mod oracle;
 pub mod photons;
 pub mod statistics;

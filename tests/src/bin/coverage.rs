@@ -48,8 +48,14 @@ fn main() -> Result<()> {
 
 impl Arguments {
     fn read() -> Result<Self> {
-        let mut read =
-            Self { seeds: 200, spp: 64, side: 200, integrators: Integrator::ALL.into(), films: None, scenes: Vec::new() };
+        let mut read = Self {
+            seeds: 200,
+            spp: 64,
+            side: 200,
+            integrators: Integrator::ALL.into(),
+            films: None,
+            scenes: Vec::new(),
+        };
         let mut words = std::env::args().skip(1);
         while let Some(word) = words.next() {
             let mut value = || words.next().with_context(|| format!("{word} needs a value"));
