@@ -5,6 +5,7 @@ pub mod bsdf;
 pub mod film;
 pub mod geometry;
 pub mod lanes;
+pub mod hunt;
 pub mod light;
 mod mutant;
 pub mod photon;

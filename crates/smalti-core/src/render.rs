@@ -79,8 +79,8 @@ pub struct Workspace {
     pub(crate) pixels: generate::Pixels,
     pub(crate) slots: Slots,
     pub(crate) rays: Stream,
-    next: Stream,
-    diffuse: Stream,
+    pub(crate) next: Stream,
+    pub(crate) diffuse: Stream,
     mirror: Stream,
     dielectric: Stream,
     emitters: Stream,
@@ -282,7 +282,7 @@ impl Renderer {
     }
 
     /// Runs one stage over its stream: the one place where stages are told apart.
-    fn perform(&self, stage: Stage, (bounce, ends): (u32, bool), maps: &Maps, workspace: &mut Workspace) {
+    pub(crate) fn perform(&self, stage: Stage, (bounce, ends): (u32, bool), maps: &Maps, workspace: &mut Workspace) {
         let Workspace {
             slots, rays, next, diffuse, mirror, dielectric, emitters, escaped, shadows, asking, first, ..
         } = workspace;

@@ -112,6 +112,11 @@ impl Stream {
         self.len == 0
     }
 
+    /// The optional columns that it has.
+    pub fn columns_used(&self) -> Columns {
+        self.used
+    }
+
     /// Forgets all paths.
     pub fn clear(&mut self) {
         self.len = 0;
