@@ -113,36 +113,6 @@ pub fn mesh(world: &mut World, (vertices, faces): (Vec<DVec3>, Vec<[u32; 3]>), m
     world.meshes.push(Mesh { vertices, faces, material, radiance: radiance.map(|x| [x; 3]) });
 }
 
-/// What absorbs as much over lengths that are `scale` times as large.
-pub fn thinned(material: Material, scale: f64) -> Material {
-    match material {
-        Material::Dielectric { ior, absorption } => {
-            Material::Dielectric { ior, absorption: absorption.map(|each| each / scale) }
-        }
-        other => other,
-    }
-}
-
-/// `world` with every coordinate passed through `place`, radii × `scale`, point lights × `scale`² and absorption ÷ `scale`:
-/// the same picture.
-pub fn moved(world: &World, scale: f64, place: impl Fn(DVec3) -> DVec3) -> World {
-    let mut moved = world.clone();
-    moved.polygons.iter_mut().flat_map(|p| &mut p.vertices).for_each(|v| *v = place(*v));
-    moved.meshes.iter_mut().flat_map(|m| &mut m.vertices).for_each(|v| *v = place(*v));
-    for sphere in &mut moved.spheres {
-        (sphere.centre, sphere.radius) = (place(sphere.centre), sphere.radius * scale);
-    }
-    for light in &mut moved.point_lights {
-        light.position = place(light.position);
-        light.intensity = light.intensity.map(|x| x * scale * scale);
-    }
-    moved.materials.iter_mut().for_each(|material| *material = thinned(*material, scale));
-    for camera in &mut moved.cameras {
-        (camera.eye, camera.look_at) = (place(camera.eye), place(camera.look_at));
-    }
-    moved
-}
-
 /// `world` with all that it emits × `factor`.
 pub fn brighter(world: &World, factor: f64) -> World {
     let mut brighter = world.clone();

@@ -8,7 +8,7 @@ use smalti_core::light::table::NO_SURFACE;
 use smalti_core::scene::{Scene, World, compile};
 use smalti_core::stream::{Columns, DIRECTION, LEAVES, ORIGIN, PRIM, Stream, THROUGHPUT, intersect, surface};
 
-use crate::build::{at, closed_box, grey, material, mesh, moved, sphere};
+use crate::build::{at, closed_box, grey, material, mesh, sphere};
 use crate::oracle::Random;
 
 /// Rays that were traced.
@@ -158,7 +158,7 @@ fn room(random: &mut Random, solid: impl FnOnce(&mut World, DVec3, &mut Random))
     solid(&mut world, centre, random);
     closed_box(&mut world, DVec3::ZERO, DVec3::splat(half), white, None);
     let away = random.cube() * 1e3;
-    compile(&moved(&world, scale, |v| (v + away) * scale), false)
+    compile(&world.placed(scale, |v| (v + away) * scale), false)
 }
 
 /// A point inside the hull of some faces' corners.

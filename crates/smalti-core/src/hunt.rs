@@ -38,25 +38,28 @@ impl Renderer {
     /// finite, a direction that is not of length 1, a distance or throughput or radiance below 0.
     ///
     /// # Panics
-    /// If there are more than 65,536 samples in all.
+    /// If there are more than 4096 pixels.
     pub fn hunt(&self, area: Rect, samples: Range<u32>, maps: &Maps, workspace: &mut Workspace) -> Option<Impossible> {
-        let pixels = area.pixels();
-        workspace.pixels.set(area, 0, pixels);
-        self.generate(workspace, samples.clone());
-        let numbers = workspace.pixels.numbers().to_vec();
-        let found = |stage: String, bounce: u32, slot: usize, (what, value)| {
-            let (sample, number) = (samples.start + (slot / pixels) as u32, numbers[slot % pixels]);
+        workspace.pixels.set(area, 0, area.pixels());
+        samples.into_iter().find_map(|sample| {
+            let (stage, bounce, (slot, what, value)) = self.first_fault(sample, maps, workspace)?;
+            let number = workspace.pixels.numbers()[slot];
             let pixel = (area.x + number % area.width, area.y + number / area.width);
-            Impossible { stage, bounce, pixel, sample, what, value }
-        };
+            Some(Impossible { stage, bounce, pixel, sample, what, value })
+        })
+    }
+
+    /// The first fault of one sample of the workspace's pixels: after which stage, and after how many bounces.
+    fn first_fault(&self, sample: u32, maps: &Maps, workspace: &mut Workspace) -> Option<(String, u32, Fault)> {
+        self.generate(workspace, sample..sample + 1);
         if let Some((at, what, value)) = impossible_ray(&workspace.rays, false) {
-            return Some(found("camera".into(), 0, slot(&workspace.rays, at), (what, value)));
+            return Some(("Camera".into(), 0, (slot(&workspace.rays, at), what, value)));
         }
         for bounce in 0..=self.plan().max_bounces {
             for stage in &self.plan().stages {
                 self.perform(*stage, (bounce, bounce == self.plan().max_bounces), maps, workspace);
-                if let Some((slot, what, value)) = after(*stage, workspace) {
-                    return Some(found(format!("{stage:?}"), bounce, slot, (what, value)));
+                if let Some(fault) = after(*stage, workspace) {
+                    return Some((format!("{stage:?}"), bounce, fault));
                 }
             }
             core::mem::swap(&mut workspace.rays, &mut workspace.next);
@@ -154,7 +157,8 @@ mod tests {
     }
 
     fn hunted(world: &World, integrator: Integrator) -> Option<Impossible> {
-        let settings = Settings { integrator, width: 24, height: 12, spp: 8, photons: Some(4096), ..Settings::default() };
+        let settings =
+            Settings { integrator, width: 24, height: 12, spp: 8, photons: Some(4096), ..Settings::default() };
         let renderer = Renderer::new(world, settings, Level::available()[0]).unwrap();
         let maps = renderer.maps(0, Pilots::default(), &AtomicU64::new(0));
         renderer.hunt(renderer.settings().area(), 0..8, &maps, &mut renderer.workspace())

@@ -21,8 +21,8 @@ pub struct Vertex {
     pub origin: [f64; 3],
     /// Its direction, unit length.
     pub direction: [f64; 3],
-    /// What it hit, for example `polygon 3`, `sphere 1`, `mesh 0 triangle 17`; `None`: nothing.
-    pub hit: Option<String>,
+    /// What it hit; `None`: nothing.
+    pub hit: Option<Origin>,
     /// Distance to the hit, metres.
     pub distance: Option<f64>,
     /// Kind of the material at the hit.
@@ -66,7 +66,7 @@ impl Renderer {
             bounce,
             origin: scene.frame.to_world(rays.triple(ORIGIN, at)),
             direction: rays.triple(DIRECTION, at).map(f64::from),
-            hit: hit.map(|prim| scene.origins[prim].to_string()),
+            hit: hit.map(|prim| scene.origins[prim]),
             distance: hit.map(|_| distance / scene.frame.scale),
             material: hit.map(|prim| Class::of(scene.classes[prim]).name()),
             throughput: rays.triple(THROUGHPUT, at),
@@ -87,6 +87,7 @@ impl Class {
     }
 }
 
+/// As in `polygon 3`, `sphere 1`, `mesh 0 triangle 17`.
 impl core::fmt::Display for Origin {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {

@@ -49,6 +49,8 @@ pub enum Command {
     Compare(CompareArgs),
     /// Replay one pixel, or one sample of it bounce by bounce
     Pixel(PixelArgs),
+    /// Examine a scene at its numerical extremes: other units and places, every SIMD level, f64
+    Doctor(DoctorArgs),
     /// Make a scene's photon map visible
     Photons(PhotonsArgs),
     /// Measure the trade between speed and accuracy: sweeps, equal time, equal error, the report
@@ -250,6 +252,40 @@ pub struct ExplainArgs {
     #[command(flatten)]
     pub image: ImageArgs,
 }
+
+/// Arguments of `smalti doctor`.
+#[derive(Debug, Args)]
+#[command(after_help = DOCTOR_EXAMPLES)]
+pub struct DoctorArgs {
+    /// Scene file (TOML)
+    pub scene: PathBuf,
+    /// Worker threads; 0: one for each logical core
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=MAX_THREADS))]
+    pub threads: u32,
+    #[command(flatten)]
+    pub simd: SimdArgs,
+    /// Render the image as it is asked for and look at every value of every stage: stop at the first that is not finite, or
+    /// negative, and replay its sample. Takes many times as long as a render
+    #[arg(long)]
+    pub hunt: bool,
+    /// Say only what is not as it should be
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// Print one JSON object on stdout
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub image: ImageArgs,
+}
+
+const DOCTOR_EXAMPLES: &str = "\
+Examples:
+  smalti doctor room.toml                      some two hundred small renders, and rays against f64
+  smalti doctor room.toml --integrator whitted
+  smalti doctor room.toml --hunt --size 800x800 --spp 64  the first value that is not finite, or negative
+
+The image is as small as 64x64 pixels with 32 samples unless --size and --spp say otherwise.
+Exit code 1 if something failed; what only asks for trouble is a warning.";
 
 /// Arguments of `smalti scaling`.
 #[derive(Debug, Args)]

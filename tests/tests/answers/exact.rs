@@ -8,7 +8,7 @@ use smalti_core::scene::World;
 use smalti_core::scene::world::Material;
 use smalti_core::settings::{Fresnel, Integrator, SamplerKind, Settings};
 use smalti_tests::build::{
-    at, brighter, camera, closed_box, globe, grey, material, mesh, mirror, moved, point_light, quad, sphere,
+    at, brighter, camera, closed_box, globe, grey, material, mesh, mirror, point_light, quad, sphere,
 };
 use smalti_tests::estimate::{render, settings};
 
@@ -140,7 +140,7 @@ fn powers_of_two_in_length_change_no_bit() {
         let at_one = render(&world, &settings).image;
         for k in [-40, -20, -1, 1, 20, 40] {
             let s = power_of_two(k);
-            let scaled = render(&moved(&world, s, |v| v * s), &settings).image;
+            let scaled = render(&world.placed(s, |v| v * s), &settings).image;
             assert!(bits(&scaled) == bits(&at_one), "{integrator:?}: lengths × 2^{k}");
         }
     }
@@ -151,10 +151,10 @@ fn translations_that_f64_holds_change_no_bit() {
     let world = everything();
     // On a grid of 2⁻²⁰ m, sums with these are exact.
     let snap = |v: DVec3| (v * 1_048_576.0).round() / 1_048_576.0;
-    let on_grid = moved(&world, 1.0, snap);
+    let on_grid = world.placed(1.0, snap);
     let at_origin = render(&on_grid, &settings(40, 30, 4)).image;
     for away in [at(1.0, -2.0, 3.0), at(1e3, 0.0, 5e5), at(-67_108_864.0, 12_345.0, 0.125)] {
-        let mut there = moved(&on_grid, 1.0, |v| v + away);
+        let mut there = on_grid.placed(1.0, |v| v + away);
         there.spheres.iter_mut().zip(&on_grid.spheres).for_each(|(moved, still)| moved.radius = still.radius);
         let moved = render(&there, &settings(40, 30, 4)).image;
         assert!(bits(&moved) == bits(&at_origin), "moved by {away}");

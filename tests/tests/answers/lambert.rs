@@ -8,7 +8,7 @@ use core::f64::consts::{PI, TAU};
 use glam::DVec3;
 use smalti_core::scene::World;
 use smalti_core::settings::Settings;
-use smalti_tests::build::{at, camera, grey, material, moved, polygon, quad, sphere};
+use smalti_tests::build::{at, camera, grey, material, polygon, quad, sphere};
 use smalti_tests::estimate::{render, settings};
 
 const ALBEDO: f64 = 0.5;
@@ -88,7 +88,7 @@ fn panels_give_the_same_at_any_scale() {
         let mut world = receiver(normal, corners[0].z.min(1.0));
         panel(&mut world, &corners);
         for scale in [1e-6, 1e6] {
-            let scaled = moved(&world, scale, |v| v * scale);
+            let scaled = world.placed(scale, |v| v * scale);
             let rendered = render(&scaled, &settings(32, 32, 1280));
             rendered.assert_mean(&format!("{name} × {scale:e}"), ALBEDO * expected / PI, 0.002);
         }

@@ -6,31 +6,11 @@ use smalti_core::scene::world::Material;
 use smalti_core::settings::{Integrator, Settings};
 use smalti_image::hash;
 use smalti_scene::Loaded;
-use smalti_tests::build::thinned;
 use smalti_tests::draw::{Way, draw, load, scene_files};
-
-/// Applies `to` to every point of the world, cameras included.
-fn map_points(world: &mut World, to: impl Fn(DVec3) -> DVec3) {
-    let polygons = world.polygons.iter_mut().flat_map(|polygon| &mut polygon.vertices);
-    let meshes = world.meshes.iter_mut().flat_map(|mesh| &mut mesh.vertices);
-    let spheres = world.spheres.iter_mut().map(|sphere| &mut sphere.centre);
-    let lights = world.point_lights.iter_mut().map(|light| &mut light.position);
-    let cameras = world.cameras.iter_mut().flat_map(|camera| [&mut camera.eye, &mut camera.look_at]);
-    for point in polygons.chain(meshes).chain(spheres).chain(lights).chain(cameras) {
-        *point = to(*point);
-    }
-}
 
 /// The world with lengths `factor` times as large, as bright as before.
 fn scaled(world: &World, factor: f64) -> World {
-    let mut world = world.clone();
-    map_points(&mut world, |point| point * factor);
-    world.spheres.iter_mut().for_each(|sphere| sphere.radius *= factor);
-    for light in &mut world.point_lights {
-        light.intensity = light.intensity.map(|channel| channel * factor * factor);
-    }
-    world.materials.iter_mut().for_each(|material| *material = thinned(*material, factor));
-    world
+    world.placed(factor, |point| point * factor)
 }
 
 /// The settings in the same unit: photon radii are lengths too.
@@ -93,20 +73,17 @@ fn any_power_of_two_with_every_integrator() {
 
 /// The world with every coordinate rounded to a multiple of `grid`: then sums with multiples of it are exact.
 fn on_grid(world: &World, grid: f64) -> World {
-    let mut world = world.clone();
-    map_points(&mut world, |point| (point / grid).round() * grid);
+    let mut world = world.placed(1.0, |point| (point / grid).round() * grid);
     world.spheres.iter_mut().for_each(|sphere| sphere.radius = (sphere.radius / grid).round() * grid);
     world
 }
 
 /// The world moved by `by`, which must be exact.
 fn moved(world: &World, by: DVec3) -> World {
-    let mut world = world.clone();
-    map_points(&mut world, |point| {
+    world.placed(1.0, |point| {
         assert_eq!((point + by) - by, point, "the translation is not exact");
         point + by
-    });
-    world
+    })
 }
 
 #[test]

@@ -9,7 +9,7 @@ use smalti_core::scene::world::Material;
 use smalti_core::settings::{Integrator, Rect, SamplerKind, Settings};
 use smalti_image::hash;
 use smalti_scheduler::{Cancel, Watch, pool, render};
-use smalti_tests::build::{at, camera, closed_box, grey, material, moved, point_light};
+use smalti_tests::build::{at, camera, closed_box, grey, material, point_light};
 use smalti_tests::draw::{Way, draw, renderer, scene};
 
 const SIZE: (u32, u32) = (24, 16);
@@ -184,7 +184,7 @@ fn any_power_of_two_as_unit_of_length_with_photons() {
         for k in [-40i64, -1, 40] {
             let factor = f64::from_bits(((1023 + k) as u64) << 52);
             let scaled = Settings { radius: settings.radius.map(|radius| radius * factor), ..settings.clone() };
-            let world = moved(&world, factor, |point| point * factor);
+            let world = world.placed(factor, |point| point * factor);
             assert_eq!(hash_of(&world, &scaled, Way::default()), expected, "× 2^{k} {settings:?}");
         }
     }

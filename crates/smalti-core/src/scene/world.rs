@@ -28,6 +28,31 @@ pub struct World {
 }
 
 impl World {
+    /// The same world elsewhere: every point put where `place` says, with radii × `scale`, point lights × `scale`² and
+    /// absorption ÷ `scale`, so that it looks the same where `place` multiplies all lengths by `scale`. What is up for a
+    /// camera stays up.
+    pub fn placed(&self, scale: f64, place: impl Fn(DVec3) -> DVec3) -> Self {
+        let mut world = self.clone();
+        world.polygons.iter_mut().flat_map(|polygon| &mut polygon.vertices).for_each(|v| *v = place(*v));
+        world.meshes.iter_mut().flat_map(|mesh| &mut mesh.vertices).for_each(|v| *v = place(*v));
+        for sphere in &mut world.spheres {
+            (sphere.centre, sphere.radius) = (place(sphere.centre), sphere.radius * scale);
+        }
+        for light in &mut world.point_lights {
+            light.position = place(light.position);
+            light.intensity = light.intensity.map(|channel| channel * scale * scale);
+        }
+        for material in &mut world.materials {
+            if let Material::Dielectric { absorption, .. } = material {
+                *absorption = absorption.map(|each| each / scale);
+            }
+        }
+        for camera in &mut world.cameras {
+            (camera.eye, camera.look_at) = (place(camera.eye), place(camera.look_at));
+        }
+        world
+    }
+
     /// Number of polygons, spheres and meshes that emit.
     pub fn emitting(&self) -> usize {
         let polygons = self.polygons.iter().filter(|polygon| polygon.radiance.is_some()).count();

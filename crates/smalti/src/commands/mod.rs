@@ -1,6 +1,7 @@
 //! The commands, one file each, and what they have in common: how a failure is told and becomes an exit code.
 
 mod compare;
+mod doctor;
 mod explain;
 mod photons;
 mod pixel;
@@ -26,6 +27,7 @@ pub fn run(cli: &Cli, start: Instant) -> ExitCode {
         Command::Scaling(args) => scaling::run(args),
         Command::Compare(args) => compare::run(args),
         Command::Pixel(args) => pixel::run(args),
+        Command::Doctor(args) => doctor::run(args),
         Command::Photons(args) => photons::run(args, cli.color, start),
         Command::Study(args) => study::run(args, cli.color),
         Command::Report(args) => report::run(args, messages),

@@ -32,8 +32,9 @@ struct SampleRecord {
     vertices: Vec<VertexRecord>,
 }
 
+/// A ray of a sample.
 #[derive(Serialize)]
-struct VertexRecord {
+pub struct VertexRecord {
     bounce: u32,
     origin: [f64; 3],
     direction: [f64; 3],
@@ -113,9 +114,23 @@ fn sample_record(job: &Job, renderer: &Renderer, args: &PixelArgs, sample: u32) 
     }
 }
 
+/// The rays of a sample.
+pub fn replayed(renderer: &Renderer, pixel: (u32, u32), sample: u32) -> Vec<VertexRecord> {
+    renderer.replay(pixel, sample).0.into_iter().map(vertex_record).collect()
+}
+
 fn vertex_record(vertex: Vertex) -> VertexRecord {
     let Vertex { bounce, origin, direction, hit, distance, material, throughput, radiance } = vertex;
-    VertexRecord { bounce, origin, direction, hit, distance, material, throughput, radiance }
+    VertexRecord {
+        bounce,
+        origin,
+        direction,
+        hit: hit.map(|what| what.to_string()),
+        distance,
+        material,
+        throughput,
+        radiance,
+    }
 }
 
 fn pixel_record(job: &Job, renderer: &Renderer, args: &PixelArgs) -> PixelRecord {
@@ -173,7 +188,8 @@ fn print_sample(args: &PixelArgs, record: SampleRecord) -> Result<(), Failure> {
     print::result(&format!("{heading}{vertices}\n  radiance of the sample {}\n", triple(record.radiance)))
 }
 
-fn vertex_table(vertices: &[VertexRecord]) -> String {
+/// The rays of a sample as a table.
+pub fn vertex_table(vertices: &[VertexRecord]) -> String {
     let heading = ["bounce", "hit", "material", "distance", "from", "direction", "throughput", "radiance so far"];
     let mut rows = vec![heading.map(String::from).to_vec()];
     rows.extend(vertices.iter().map(|vertex| {

@@ -1,6 +1,7 @@
 //! The program as it is typed: help, mistakes and their messages, exit codes, files, JSON.
 
 mod budget;
+mod doctor;
 mod images;
 mod mistakes;
 mod photon_map;
