@@ -49,6 +49,10 @@ coverage *FLAGS:
     {{coverage_of}} --size 200 --spp 64 {{FLAGS}} scenes/cornell.toml scenes/furnace.toml
     {{coverage_of}} --size 96 --spp 64 {{FLAGS}} scenes/blob.toml
 
+# How far the kernels are from f64: the table of docs/kernels.md
+accuracy *FLAGS:
+    cargo run --release --quiet --package smalti-tests --bin accuracy -- {{FLAGS}}
+
 # A thousand million rays at the edges and corners of closed meshes, and as many that leave a surface: none may slip out or
 # hit it again (about ten minutes)
 rays *FLAGS:

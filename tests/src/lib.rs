@@ -1,5 +1,6 @@
 //! What the acceptance tests share.
 
+pub mod accuracy;
 pub mod build;
 pub mod closed;
 pub mod draw;
