@@ -8,7 +8,7 @@ use smalti_core::photon::kd_tree::Tree;
 use smalti_core::photon::pass::{Pass, PhotonWorkspace};
 use smalti_core::photon::{Account, Kind, Map, Photons, Quantity, SUB_MAPS, Surfaces, Traced};
 use smalti_core::render::{Level, Renderer};
-use smalti_core::scene::World;
+use smalti_core::scene::{Origin, World};
 use smalti_core::settings::{Integrator, Settings};
 
 /// A renderer that maps all light, at the best SIMD level.
@@ -59,6 +59,15 @@ pub struct Place {
 }
 
 impl Place {
+    /// A point of the world on the primitive that `origin` became.
+    ///
+    /// # Panics
+    /// If there is none.
+    pub fn on(renderer: &Renderer, origin: Origin, point: DVec3, normal: DVec3) -> Self {
+        let prim = renderer.scene().origins.iter().position(|other| *other == origin);
+        Self::new(renderer, prim.expect("it is in the scene") as u32, point, normal)
+    }
+
     /// A point of the world on the primitive `prim`.
     pub fn new(renderer: &Renderer, prim: u32, point: DVec3, normal: DVec3) -> Self {
         let point = renderer.scene().frame.point(point).as_vec3().to_array();

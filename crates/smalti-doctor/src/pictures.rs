@@ -12,7 +12,7 @@ use smalti_image::hash;
 use smalti_scheduler::{Cancel, Outcome, render};
 
 use crate::finding::{Finding, Verdict, counted};
-use crate::turned::{moved, scaled, size, turned};
+use crate::turned::{bounds, moved, scaled, size, smallest_lamp, turned};
 use crate::{DoctorError, Patient};
 
 /// Powers of two by which lengths are multiplied: no bit may change.
@@ -54,18 +54,19 @@ pub fn check(patient: &Patient<'_>, pool: &ThreadPool, tell: &mut impl FnMut(Fin
     let means = studio.means(world, settings)?;
     for k in DECADES {
         let (world, settings) = scaled(world, settings, power_of_ten(k));
-        tell(same_light(("scale", format!("10^{k}")), &means, &studio.means(&world, &settings)?));
+        tell(same_light(("scale", format!("10^{k}")), (&means, &studio.means(&world, &settings)?), ALLOWED));
     }
     // Along no axis and no edge.
     let way = DVec3::new(0.48, -0.6, 0.64);
     for k in AWAY {
         let far = moved(world, way * size(world) * power_of_ten(k));
-        tell(same_light(("moved", format!("10^{k} sizes")), &means, &studio.means(&far, settings)?));
+        let found = studio.means(&far, settings)?;
+        tell(same_light(("moved", format!("10^{k} sizes")), (&means, &found), ALLOWED + coarseness(&far)));
     }
     for (axis, angle) in [(DVec3::Z, 0.5), (DVec3::new(0.6, 0.0, 0.8), 2.0), (way, 1.0)] {
         let turned = turned(world, DQuat::from_axis_angle(axis.normalize(), angle));
         let case = format!("{:.0}° about ({}, {}, {})", angle * 180.0 / PI, axis.x, axis.y, axis.z);
-        tell(same_light(("turned", case), &means, &studio.means(&turned, settings)?));
+        tell(same_light(("turned", case), (&means, &studio.means(&turned, settings)?), ALLOWED));
     }
     Ok(())
 }
@@ -145,15 +146,22 @@ fn same_bits(what: (&'static str, impl Into<String>), expected: &Image, found: &
     Finding::new(what, (changed == 0, Verdict::Failed), changed as f64, says)
 }
 
-/// Whether the means of pictures with the same seeds differ by no more than noise.
-fn same_light(what: (&'static str, impl Into<String>), expected: &[f64], found: &[f64]) -> Finding {
+/// What the light of the smallest lamp may change by because f64 is coarse where it is.
+fn coarseness(world: &World) -> f64 {
+    let largest = bounds(world).map_or(0.0, |(low, high)| low.abs().max(high.abs()).max_element());
+    let least = smallest_lamp(world).unwrap_or_else(|| size(world));
+    4.0 * largest * f64::EPSILON / least
+}
+
+/// Whether the means of pictures with the same seeds differ by no more than noise, or by so little of the brightness.
+fn same_light(what: (&'static str, impl Into<String>), (expected, found): (&[f64], &[f64]), allowed: f64) -> Finding {
     let count = expected.len() as f64;
     let differences: Vec<f64> = expected.iter().zip(found).map(|(a, b)| b - a).collect();
     let mean = differences.iter().sum::<f64>() / count;
     let squares = differences.iter().map(|each| (each - mean) * (each - mean)).sum::<f64>();
     let error = (squares / (count * (count - 1.0))).sqrt();
     let brightness = expected.iter().sum::<f64>() / count;
-    let is_same = mean.abs() <= ALLOWED * brightness || mean.abs() <= LIMIT * error;
+    let is_same = mean.abs() <= allowed * brightness || mean.abs() <= LIMIT * error;
     let [change, noise] = [mean, error].map(|value| if brightness > 0.0 { 100.0 * value / brightness } else { value });
     if LIMIT * error > brightness && is_same {
         let says = format!("brightness {change:+.0} % ± {noise:.0} %: too noisy to tell");
@@ -195,7 +203,7 @@ mod tests {
     fn lost_light_is_told_from_noise() {
         let seeds = |of: &dyn Fn(f64) -> f64| (0..SEEDS).map(|k| of(k as f64)).collect::<Vec<f64>>();
         let base = seeds(&|k| 1.0 + 0.01 * (k - 3.5));
-        let of = |found: Vec<f64>| same_light(("turned", ""), &base, &found).verdict;
+        let of = |found: Vec<f64>| same_light(("turned", ""), (&base, &found), ALLOWED).verdict;
         assert_eq!(of(base.clone()), Verdict::Sound);
         assert_eq!(of(base.iter().rev().copied().collect()), Verdict::Sound);
         assert_eq!(of(base.iter().map(|mean| mean * 1.00005).collect()), Verdict::Sound);

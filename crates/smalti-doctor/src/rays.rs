@@ -9,7 +9,7 @@ use smalti_core::settings::{Integrator, Settings};
 
 use crate::double::{Hit, Ray, nearest};
 use crate::finding::{Finding, Verdict, counted};
-use crate::turned::size;
+use crate::turned::{bounds, moved, size};
 use crate::{DoctorError, Patient};
 
 /// Tests of a ray against a primitive in f64, in all.
@@ -65,8 +65,10 @@ impl Tally {
 pub fn check(patient: &Patient<'_>, pool: &ThreadPool, tell: &mut impl FnMut(Finding)) -> Result<(), DoctorError> {
     // What paths hit does not depend on the integrator; the path tracer needs no photons for it.
     let settings = Settings { integrator: Integrator::Path, ..patient.settings.clone() };
-    let renderer = pool.install(|| Renderer::new(patient.world, settings, patient.level))?;
-    let tally = pool.install(|| compared(&renderer, patient.world));
+    // Beside the origin, where a metre has all the steps of f64: how coarse they are elsewhere is told apart.
+    let world = bounds(patient.world).map_or(patient.world.clone(), |(low, _)| moved(patient.world, -low));
+    let renderer = pool.install(|| Renderer::new(&world, settings, patient.level))?;
+    let tally = pool.install(|| compared(&renderer, &world));
     let Tally { rays, edges, off, leaks, self_hits, elsewhere, first } = tally;
     let of = |count: usize, what: &str| match (count, &first) {
         (0, _) => format!("none of {rays} rays {what}"),

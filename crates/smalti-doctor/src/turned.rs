@@ -20,6 +20,16 @@ pub fn size(world: &World) -> f64 {
     if extent > 0.0 { extent } else { 1.0 }
 }
 
+/// Extent of the smallest polygon that emits; `None` if there is none. (A sphere is as large wherever it is.)
+pub fn smallest_lamp(world: &World) -> Option<f64> {
+    let lamps = world.polygons.iter().filter(|polygon| polygon.radiance.is_some());
+    let extent = |corners: &[DVec3]| {
+        let low = corners.iter().copied().reduce(DVec3::min)?;
+        Some((corners.iter().copied().reduce(DVec3::max)? - low).max_element())
+    };
+    lamps.filter_map(|polygon| extent(&polygon.vertices)).reduce(f64::min)
+}
+
 /// Lengths `factor` times as large, with the settings that are lengths.
 pub fn scaled(world: &World, settings: &Settings, factor: f64) -> (World, Settings) {
     let settings = Settings { radius: settings.radius.map(|radius| radius * factor), ..settings.clone() };

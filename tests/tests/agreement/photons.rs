@@ -155,11 +155,13 @@ fn caustics_on_the_floor_have_the_oracles_flux() {
     let renderer = mapper(&world, Settings::default());
     let (frame, photons) = (renderer.scene().frame, renderer.plan().photons.as_ref().unwrap());
     let traced = trace(&renderer, photons.caustic.as_ref().unwrap(), 4_000_000, 0);
-    let mut found = [0.0; RINGS.len()];
+    let (floor, mut found) = (Origin::Polygon(0), [0.0; RINGS.len()]);
     for (place, flux) in traced.photons.places.iter().zip(&traced.photons.flux) {
         let [x, y, z, tag] = *place;
         let point = DVec3::from_array(frame.to_world([x, y, z]));
-        if let Some(ring) = ring(point).filter(|_| Tag(tag.to_bits()).prim() == 0) {
+        if let Some(ring) =
+            ring(point).filter(|_| renderer.scene().origins[Tag(tag.to_bits()).prim() as usize] == floor)
+        {
             found[ring] += f64::from(flux[0]) / (frame.scale * frame.scale);
         }
     }
@@ -185,7 +187,7 @@ fn mean_irradiance(renderer: &Renderer, photons: &Photons, radius: f64) -> f64 {
     let mut at_random = || {
         let (from_middle, turn) = (radius * random.unit().sqrt(), 2.0 * PI * random.unit());
         let point = at(from_middle * libm::cos(turn), from_middle * libm::sin(turn), 0.0);
-        let place = Place::new(renderer, 0, point, DVec3::Z);
+        let place = Place::on(renderer, Origin::Polygon(0), point, DVec3::Z);
         irradiance((&map, 0, 99), surfaces, &place, (0.01 * renderer.scene().frame.scale) as f32)[0]
     };
     (0..count).map(|_| at_random()).sum::<f64>() / f64::from(count)

@@ -3,8 +3,8 @@
 use glam::DVec3;
 use smalti_core::photon::pass::Pass;
 use smalti_core::photon::{Aim, Kind};
-use smalti_core::scene::World;
 use smalti_core::scene::world::Material;
+use smalti_core::scene::{Origin, World};
 use smalti_core::settings::{Integrator, Settings};
 use smalti_tests::build::{at, camera, closed_box, grey, material, point_light, quad, sphere};
 use smalti_tests::estimate::{Repeated, assert_near, repeat, settings};
@@ -82,7 +82,7 @@ fn photons_bring_lamberts_irradiance() {
         quad(&mut world, DVec3::Z, (DVec3::Y * side / 2.0, DVec3::X * side / 2.0), black, Some(1.0));
         let renderer = mapper(&world, Settings { max_bounces: Some(1), ..Settings::default() });
         let (scene, photons) = (renderer.scene(), renderer.plan().photons.as_ref().unwrap());
-        let place = Place::new(&renderer, 0, DVec3::ZERO, DVec3::Z);
+        let place = Place::on(&renderer, Origin::Polygon(0), DVec3::ZERO, DVec3::Z);
         let radius = (0.1 * scene.frame.scale) as f32;
         // Only what comes near is asked.
         let aim = Aim::at(&scene.lights, &[[place.point[0], place.point[1], place.point[2], 4.0 * radius]], &[true]);

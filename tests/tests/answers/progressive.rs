@@ -8,7 +8,7 @@ use smalti_core::photon::maps::Pilots;
 use smalti_core::photon::pass::Pass;
 use smalti_core::photon::{Aim, Kind};
 use smalti_core::render::{Level, Renderer};
-use smalti_core::scene::World;
+use smalti_core::scene::{Origin, World};
 use smalti_core::settings::{Integrator, SamplerKind, Settings};
 use smalti_scheduler::pool;
 use smalti_tests::build::{at, camera, grey, material, mirror, point_light, quad};
@@ -42,7 +42,7 @@ fn a_radius_blurs_by_its_square() {
     for round in 0..rounds {
         let map = map_of(&trace(&renderer, &pass, 1 << 16, round).photons);
         for (k, radius) in radii.into_iter().enumerate() {
-            let place = Place::new(&renderer, 0, DVec3::ZERO, DVec3::Z);
+            let place = Place::on(&renderer, Origin::Polygon(0), DVec3::ZERO, DVec3::Z);
             let [found, ..] = irradiance((&map, 0, 0), &photons.surfaces, &place, (radius * scale) as f32);
             sums[k] += found;
             squares[k] += found * found;

@@ -80,12 +80,14 @@ impl Pilot {
             Some(radius) => leaves.iter_mut().for_each(|leaf| leaf.radius = radius.max(SMALLEST)),
             None => soften(&mut leaves),
         }
+        // Squares of flux in watts may be beyond what f32 holds: the unit is about the largest flux.
+        let unit = power_of_two_by(leaves.iter().map(|leaf| leaf.flux).fold(0.0, f32::max));
         let square = |number: usize| {
             let ([x, y, z, _], _) = tree.photon(number)?;
-            Some(([x, y, z], leaves[number / BLOCK].square()))
+            Some(([x, y, z], leaves[number / BLOCK].square(unit)))
         };
         let squares: Vec<_> = (0..tree.flux.len()).filter_map(square).collect();
-        let expected = Grid::densities(&squares).map(f32::sqrt);
+        let expected = Grid::densities(&squares).map(|mean| unit * mean.sqrt());
         let mut radii: Vec<f32> = leaves.iter().map(|leaf| leaf.radius).collect();
         if radii.is_empty() {
             radii.push(radius.unwrap_or(LARGEST));
@@ -178,13 +180,18 @@ impl Region {
         Self { middle, radius, density, flux: flux / (share * photons), area: area / photons }
     }
 
-    /// Mean square of the irradiance that a query finds, times the area by photon. A query finds n photons; the mean
-    /// square of n is the square of its mean, and its mean.
-    fn square(&self) -> f32 {
+    /// Mean square of the irradiance that a query finds, in this unit of flux, times the area by photon. A query finds n
+    /// photons; the mean square of n is the square of its mean, and its mean.
+    fn square(&self, unit: f32) -> f32 {
         let disc = PI * self.radius * self.radius;
-        let (found, one) = (self.density * disc, self.flux / disc);
+        let (found, one) = (self.density * disc, self.flux / unit / disc);
         one * one * found * (found + 1.0) * self.area
     }
+}
+
+/// The power of two at or below `x`; 1 where that is none.
+fn power_of_two_by(x: f32) -> f32 {
+    if x.is_normal() && x > 0.0 { f32::from_bits(x.to_bits() & 0x7f80_0000) } else { 1.0 }
 }
 
 /// Makes radii smaller until they grow nowhere faster than [`SLOPE`].

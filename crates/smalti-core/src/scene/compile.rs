@@ -23,17 +23,8 @@ struct Compiler<'w> {
 pub fn compile(world: &World, sampled_sky: bool) -> Scene {
     let scene = Scene { frame: Frame::of(world), ..Scene::default() };
     let mut compiler = Compiler { world, scene, vertex_ids: HashMap::new(), plane_ids: HashMap::new() };
-    for (index, polygon) in world.polygons.iter().enumerate() {
-        let corners: Vec<DVec3> = polygon.vertices.iter().map(|&v| compiler.scene.frame.point(v)).collect();
-        compiler.face(&corners, polygon.material, polygon.radiance, Origin::Polygon(index as u32));
-    }
-    for (index, mesh) in world.meshes.iter().enumerate() {
-        let vertices: Vec<DVec3> = mesh.vertices.iter().map(|&v| compiler.scene.frame.point(v)).collect();
-        for (triangle, face) in mesh.faces.iter().enumerate() {
-            let corners = face.map(|i| vertices[i as usize]);
-            compiler.face(&corners, mesh.material, mesh.radiance, Origin::Mesh(index as u32, triangle as u32));
-        }
-    }
+    compiler.faces(true);
+    compiler.faces(false);
     compiler.finish(sampled_sky)
 }
 
@@ -58,6 +49,24 @@ impl Compiler<'_> {
             self.scene.media = Some(media);
         }
         self.scene
+    }
+
+    /// The faces that emit, or the others. Those that emit come first: of two in one place the first is seen, and a lamp in
+    /// a ceiling must be, as shadow rays find it too.
+    fn faces(&mut self, emit: bool) {
+        let world = self.world;
+        let of_these = |radiance: &Option<Rgb>| radiance.is_some() == emit;
+        for (index, polygon) in world.polygons.iter().enumerate().filter(|item| of_these(&item.1.radiance)) {
+            let corners: Vec<DVec3> = polygon.vertices.iter().map(|&v| self.scene.frame.point(v)).collect();
+            self.face(&corners, polygon.material, polygon.radiance, Origin::Polygon(index as u32));
+        }
+        for (index, mesh) in world.meshes.iter().enumerate().filter(|item| of_these(&item.1.radiance)) {
+            let vertices: Vec<DVec3> = mesh.vertices.iter().map(|&v| self.scene.frame.point(v)).collect();
+            for (triangle, face) in mesh.faces.iter().enumerate() {
+                let corners = face.map(|i| vertices[i as usize]);
+                self.face(&corners, mesh.material, mesh.radiance, Origin::Mesh(index as u32, triangle as u32));
+            }
+        }
     }
 
     fn face(&mut self, corners: &[DVec3], material: usize, radiance: Option<Rgb>, origin: Origin) {

@@ -1,7 +1,8 @@
 //! The scene twice: the [`World`] as a user describes it (f64), and the compiled [`Scene`] that is traced (f32).
 //!
 //! In a scene everything is an index into a flat table. Primitives are numbered through: faces (planar convex polygons;
-//! polygons first, then mesh triangles), then spheres. Ties between hits at the same distance go to the lower number.
+//! those that emit first, then the others; of each the polygons, then the mesh triangles), then spheres. Ties between hits
+//! at the same distance go to the lower number.
 
 mod compile;
 pub mod frame;
