@@ -49,12 +49,18 @@ coverage *FLAGS:
     {{coverage_of}} --size 200 --spp 64 {{FLAGS}} scenes/cornell.toml scenes/furnace.toml
     {{coverage_of}} --size 96 --spp 64 {{FLAGS}} scenes/blob.toml
 
+# The golden scenes on another architecture, by qemu: needs rustup, qemu-user and gcc-aarch64-linux-gnu (about ten minutes)
+aarch64:
+    rustup target add aarch64-unknown-linux-gnu
+    CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER=aarch64-linux-gnu-gcc \
+    CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUNNER="qemu-aarch64 -L /usr/aarch64-linux-gnu" \
+    cargo test --locked --target aarch64-unknown-linux-gnu --package smalti-tests --test golden
+
 # How far the kernels are from f64: the table of docs/kernels.md
 accuracy *FLAGS:
     cargo run --release --quiet --package smalti-tests --bin accuracy -- {{FLAGS}}
 
-# A thousand million rays at the edges and corners of closed meshes, and as many that leave a surface: none may slip out or
-# hit it again (about ten minutes)
+# A thousand million rays at edges of closed meshes, as many off surfaces: none may slip out or hit again (ten minutes)
 rays *FLAGS:
     cargo run --release --quiet --package smalti-tests --bin rays -- {{FLAGS}}
 
