@@ -10,6 +10,9 @@ use tempfile::TempDir;
 /// Where no browser is found, tests pass unless this variable says `required`.
 const REQUIRED: &str = "SMALTI_BROWSER";
 
+/// Drivers that are started at most until one listens.
+const STARTS: usize = 8;
+
 /// What WebDriver calls a reference to an element.
 const ELEMENT: &str = "element-6066-11e4-a52e-4f735466cecf";
 
@@ -24,15 +27,13 @@ pub struct Browser {
 impl Browser {
     /// Starts a browser; `None` if there is none and none is required.
     pub fn start() -> Option<Self> {
-        let driver = Command::new("chromedriver").arg("--port=0").stdout(Stdio::piped()).stderr(Stdio::null()).spawn();
-        let Ok(mut driver) = driver else { return missing("there is no chromedriver") };
+        let Some((mut driver, port)) = driver() else { return missing("there is no chromedriver") };
         let folder = tempfile::tempdir().unwrap();
-        let address = format!("http://127.0.0.1:{}/session", port(&mut driver));
+        let address = format!("http://127.0.0.1:{port}/session");
         let session = match send(&address, &capabilities(folder.path())) {
             Ok(answer) => format!("{address}/{}", answer["sessionId"].as_str().expect("a session")),
             Err(answer) if answer.to_string().contains("cannot find") => {
-                let _ = driver.kill();
-                let _ = driver.wait();
+                end(&mut driver);
                 return missing("there is a chromedriver, but no browser");
             }
             Err(answer) => panic!("no session: {answer}"),
@@ -129,18 +130,37 @@ impl Drop for Browser {
     fn drop(&mut self) {
         // The driver ends the browser; if it cannot, its own end does.
         let _ = ureq::delete(&self.session).call();
-        let _ = self.driver.kill();
-        let _ = self.driver.wait();
+        end(&mut self.driver);
     }
 }
 
-/// The port on which a driver that was just started listens.
-fn port(driver: &mut Child) -> u16 {
+/// A driver that listens, and its port; `None` if there is none on this machine.
+///
+/// A driver chooses a free port for the one version of the internet protocol and needs the same one for the other: where
+/// another program was quicker it ends without a word, and the next one chooses anew.
+fn driver() -> Option<(Child, u16)> {
+    for _ in 0..STARTS {
+        let driver = Command::new("chromedriver").arg("--port=0").stdout(Stdio::piped()).stderr(Stdio::null()).spawn();
+        let mut driver = driver.ok()?;
+        match port(&mut driver) {
+            Some(port) => return Some((driver, port)),
+            None => end(&mut driver),
+        }
+    }
+    panic!("none of {STARTS} chromedrivers says on which port it listens");
+}
+
+fn end(driver: &mut Child) {
+    let _ = driver.kill();
+    let _ = driver.wait();
+}
+
+/// The port on which a driver that was just started listens; `None` if it ends before it says so.
+fn port(driver: &mut Child) -> Option<u16> {
     let lines = BufReader::new(driver.stdout.take().expect("its output")).lines();
-    let found = lines.map_while(Result::ok).find_map(|line| {
+    lines.map_while(Result::ok).find_map(|line| {
         line.strip_prefix("ChromeDriver was started successfully on port ")?.trim_end_matches('.').parse().ok()
-    });
-    found.expect("chromedriver says on which port it listens")
+    })
 }
 
 fn capabilities(folder: &Path) -> Value {
