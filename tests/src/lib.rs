@@ -1,6 +1,7 @@
 //! What the acceptance tests share.
 
 pub mod accuracy;
+pub mod arguments;
 pub mod build;
 pub mod closed;
 pub mod draw;

@@ -1,14 +1,14 @@
 //! Hunting for the first value that cannot be: every value of every stage is looked at, which takes many times as long as
 //! a render.
 
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 
 use crate::accel::MISS;
 use crate::photon::maps::Maps;
 use crate::plan::Stage;
 use crate::render::{Renderer, Workspace};
 use crate::settings::Rect;
-use crate::stream::{DIRECTION, DISTANCE, ETA, ORIGIN, PDF, PRIM, SLOT, Slots, Stream, THROUGHPUT};
+use crate::stream::{DIRECTION, DISTANCE, ETA, ORIGIN, PDF, PRIM, Slots, Stream, THROUGHPUT};
 
 /// A value that cannot be.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,8 +43,7 @@ impl Renderer {
         workspace.pixels.set(area, 0, area.pixels());
         samples.into_iter().find_map(|sample| {
             let (stage, bounce, (slot, what, value)) = self.first_fault(sample, maps, workspace)?;
-            let number = workspace.pixels.numbers()[slot];
-            let pixel = (area.x + number % area.width, area.y + number / area.width);
+            let pixel = area.pixel(workspace.pixels.numbers()[slot] as usize);
             Some(Impossible { stage, bounce, pixel, sample, what, value })
         })
     }
@@ -53,19 +52,15 @@ impl Renderer {
     fn first_fault(&self, sample: u32, maps: &Maps, workspace: &mut Workspace) -> Option<(String, u32, Fault)> {
         self.generate(workspace, sample..sample + 1);
         if let Some((at, what, value)) = impossible_ray(&workspace.rays, false) {
-            return Some(("Camera".into(), 0, (slot(&workspace.rays, at), what, value)));
+            return Some(("Camera".into(), 0, (workspace.rays.slot(at), what, value)));
         }
         for bounce in 0..=self.plan().max_bounces {
-            for stage in &self.plan().stages {
-                self.perform(*stage, (bounce, bounce == self.plan().max_bounces), maps, workspace);
-                if let Some(fault) = after(*stage, workspace) {
-                    return Some((format!("{stage:?}"), bounce, fault));
-                }
-            }
-            core::mem::swap(&mut workspace.rays, &mut workspace.next);
-            workspace.next.clear();
-            if workspace.rays.is_empty() {
-                break;
+            let mut first = None;
+            let next = self.bounce(bounce, maps, workspace, |stage, workspace| {
+                first = first.take().or_else(|| Some((format!("{stage:?}"), bounce, after(stage, workspace)?)));
+            });
+            if first.is_some() || next == ControlFlow::Break(()) {
+                return first;
             }
         }
         None
@@ -76,15 +71,11 @@ impl Renderer {
 fn after(stage: Stage, workspace: &Workspace) -> Option<Fault> {
     let hit = matches!(stage, Stage::Intersect | Stage::Absorb);
     let of = |stream: &Stream, hit: bool| {
-        impossible_ray(stream, hit).map(|(at, what, value)| (slot(stream, at), what, value))
+        impossible_ray(stream, hit).map(|(at, what, value)| (stream.slot(at), what, value))
     };
     let rays = if hit { of(&workspace.rays, true) } else { None };
     let vertices = if stage == Stage::Surface { of(&workspace.diffuse, false) } else { None };
     rays.or(vertices).or_else(|| of(&workspace.next, false)).or_else(|| impossible_radiance(&workspace.slots))
-}
-
-fn slot(stream: &Stream, at: usize) -> usize {
-    stream.value(SLOT, at) as usize & 0xffff
 }
 
 fn impossible_ray(stream: &Stream, hit: bool) -> Option<Fault> {

@@ -14,6 +14,7 @@ use crate::photon::{Kind, Quantity, SUB_MAPS, Show};
 pub use crate::plan::{Decision, PlanError};
 use crate::plan::{Plan, Stage};
 pub use crate::replay::Vertex;
+use crate::scene::media::CLEAR;
 use crate::scene::{Scene, World, compile};
 use crate::settings::{Integrator, Settings};
 use crate::stream::{
@@ -241,20 +242,19 @@ impl Renderer {
         }
     }
 
-    /// Takes the stream through all stages once; what scattered is the new stream. `look` sees the rays with their hits.
+    /// Takes the stream through all stages once; what scattered is the new stream. `look` sees what each
+    /// stage has done.
     pub(crate) fn bounce(
         &self,
         bounce: u32,
         maps: &Maps,
         workspace: &mut Workspace,
-        mut look: impl FnMut(&Self, &Workspace),
+        mut look: impl FnMut(Stage, &Workspace),
     ) -> ControlFlow<()> {
         let ends = bounce == self.plan.max_bounces;
         for stage in &self.plan.stages {
             self.perform(*stage, (bounce, ends), maps, workspace);
-            if *stage == Stage::Intersect {
-                look(self, workspace);
-            }
+            look(*stage, workspace);
         }
         core::mem::swap(&mut workspace.rays, &mut workspace.next);
         workspace.next.clear();
@@ -272,7 +272,8 @@ impl Renderer {
                 pixels.enter_round(self.settings.seed, sample / ROUND);
             }
             let view = &self.scene.views[self.settings.camera];
-            let what = (view, &self.settings, self.plan.columns);
+            let medium = self.scene.media.as_ref().map_or(CLEAR, |media| media.views[self.settings.camera]);
+            let what = (view, medium, &self.settings, self.plan.columns);
             dispatch!(self.token, l => generate::run(l, what, pixels, (sample, first), rays));
             first = rays.len();
         }
@@ -282,7 +283,7 @@ impl Renderer {
     }
 
     /// Runs one stage over its stream: the one place where stages are told apart.
-    pub(crate) fn perform(&self, stage: Stage, (bounce, ends): (u32, bool), maps: &Maps, workspace: &mut Workspace) {
+    fn perform(&self, stage: Stage, (bounce, ends): (u32, bool), maps: &Maps, workspace: &mut Workspace) {
         let Workspace {
             slots, rays, next, diffuse, mirror, dielectric, emitters, escaped, shadows, asking, first, ..
         } = workspace;
@@ -445,6 +446,5 @@ fn deposit_sample(
 }
 
 fn rejected(tile: &Tile, pixel: usize, sample: u32) -> Rejected {
-    let (x, y) = (pixel as u32 % tile.area.width, pixel as u32 / tile.area.width);
-    Rejected { pixel: (tile.area.x + x, tile.area.y + y), sample }
+    Rejected { pixel: tile.area.pixel(pixel), sample }
 }

@@ -7,6 +7,7 @@ use std::sync::atomic::AtomicU64;
 use crate::accel::MISS;
 use crate::film::ROUND;
 use crate::photon::maps::Pilots;
+use crate::plan::Stage;
 use crate::render::{Renderer, Workspace};
 use crate::scene::{Class, Origin};
 use crate::settings::Rect;
@@ -44,8 +45,10 @@ impl Renderer {
         let mut vertices = Vec::new();
         for bounce in 0..=self.plan().max_bounces {
             let first = vertices.len();
-            let next = self.bounce(bounce, &maps, &mut workspace, |renderer, workspace| {
-                vertices.extend((0..workspace.rays.len()).map(|at| renderer.vertex(bounce, workspace, at)));
+            let next = self.bounce(bounce, &maps, &mut workspace, |stage, workspace| {
+                if stage == Stage::Intersect {
+                    vertices.extend((0..workspace.rays.len()).map(|at| self.vertex(bounce, workspace, at)));
+                }
             });
             let radiance = workspace.slots.radiance()[0];
             vertices[first..].iter_mut().for_each(|vertex| vertex.radiance = radiance);

@@ -174,4 +174,9 @@ impl Rect {
     pub fn pixels(self) -> usize {
         self.width as usize * self.height as usize
     }
+
+    /// Column and row, in the whole image, of its pixel `number`, counted row by row.
+    pub fn pixel(self, number: usize) -> (u32, u32) {
+        (self.x + number as u32 % self.width, self.y + number as u32 / self.width)
+    }
 }

@@ -1,7 +1,7 @@
 //! What a ray hits, in f64 and on the scene as it was written: every primitive tested, no frame, no tree, no lanes.
 
 use glam::DVec3;
-use smalti_core::scene::{Origin, World};
+use smalti_core::scene::{Origin, World, newell};
 
 /// A ray in the user's units.
 #[derive(Clone, Copy, Debug)]
@@ -48,8 +48,7 @@ pub fn nearest(world: &World, ray: &Ray, from: f64) -> Option<Hit> {
 
 /// A convex planar face: its plane, and whether the point lies to the left of every edge.
 fn face(corners: &[DVec3], ray: &Ray, from: f64, origin: Origin) -> Option<Hit> {
-    let area: DVec3 = corners[1..].windows(2).map(|pair| (pair[0] - corners[0]).cross(pair[1] - corners[0])).sum();
-    let normal = area.normalize_or_zero();
+    let normal = newell(corners).normalize_or_zero();
     let slope = normal.dot(ray.direction);
     if slope == 0.0 {
         return None;

@@ -4,14 +4,12 @@
 use std::collections::HashSet;
 
 use glam::DVec3;
-use smalti_core::render::Renderer;
-use smalti_core::scene::{Origin, World};
-use smalti_core::settings::{Integrator, Settings};
+use smalti_core::scene::{Origin, World, compile, newell};
 
+use crate::Patient;
 use crate::double::{Ray, nearest};
 use crate::finding::{Finding, Verdict, counted};
-use crate::turned::{bounds, size};
-use crate::{DoctorError, Patient};
+use crate::turned::size;
 
 /// A triangle whose height is this small beside its longest edge is a sliver.
 const SLIVER: f64 = 1e-6;
@@ -32,9 +30,8 @@ const STEPS: f64 = 15.0;
 const NAMED: usize = 3;
 
 /// Looks at the geometry.
-pub fn check(patient: &Patient<'_>, tell: &mut impl FnMut(Finding)) -> Result<(), DoctorError> {
-    let settings = Settings { integrator: Integrator::Path, ..patient.settings.clone() };
-    let dropped = Renderer::new(patient.world, settings, patient.level)?.scene().dropped;
+pub fn check(patient: &Patient<'_>, tell: &mut impl FnMut(Finding)) {
+    let dropped = compile(patient.world, false).dropped;
     let mut warn = |case: &'static str, figure: f64, says: Result<String, String>| {
         let is_sound = says.is_ok();
         let says = says.unwrap_or_else(|wrong| wrong);
@@ -50,7 +47,6 @@ pub fn check(patient: &Patient<'_>, tell: &mut impl FnMut(Finding)) -> Result<()
     listed("gaps", gaps(patient.world), "so near another that rounding may join them", &mut warn);
     coordinates(patient.world, &mut warn);
     cameras(patient.world, &mut warn);
-    Ok(())
 }
 
 /// Tells how many things `are` so, and which.
@@ -83,10 +79,9 @@ fn surfaces(world: &World) -> Vec<(Origin, Vec<DVec3>)> {
 
 fn slivers(surfaces: &[(Origin, Vec<DVec3>)]) -> Vec<String> {
     let is_sliver = |corners: &[DVec3]| {
-        let twice: DVec3 = corners[1..].windows(2).map(|pair| (pair[0] - corners[0]).cross(pair[1] - corners[0])).sum();
         let next = corners.iter().cycle().skip(1);
         let longest = corners.iter().zip(next).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
-        let area = twice.length();
+        let area = newell(corners).length();
         area > 0.0 && area < SLIVER * longest * longest
     };
     surfaces.iter().filter(|surface| is_sliver(&surface.1)).map(|surface| surface.0.to_string()).collect()
@@ -148,7 +143,7 @@ fn gaps(world: &World) -> Vec<String> {
 /// How coarse f64 is where the scene lies.
 fn coordinates(world: &World, warn: &mut impl FnMut(&'static str, f64, Result<String, String>)) {
     let size = size(world);
-    let largest = bounds(world).map_or(0.0, |(low, high)| low.abs().max(high.abs()).max_element());
+    let largest = world.bounds().map_or(0.0, |(low, high)| low.abs().max(high.abs()).max_element());
     let step = largest * f64::EPSILON;
     let says = match step > STEP * size {
         false => Ok(format!("known to {:.0e} of the scene, rounded to {STEP:.0e} of it", step / size)),
@@ -162,7 +157,7 @@ fn coordinates(world: &World, warn: &mut impl FnMut(&'static str, f64, Result<St
 /// Cameras that see a point, or stand in a surface.
 fn cameras(world: &World, warn: &mut impl FnMut(&'static str, f64, Result<String, String>)) {
     let size = size(world);
-    let middle = bounds(world).map_or(DVec3::ZERO, |(low, high)| (low + high) / 2.0);
+    let middle = world.bounds().map_or(DVec3::ZERO, |(low, high)| (low + high) / 2.0);
     for camera in &world.cameras {
         let name = if camera.name.is_empty() { "the camera".into() } else { format!("camera {}", camera.name) };
         let away = camera.eye.distance(middle) / size;
@@ -186,6 +181,7 @@ fn cameras(world: &World, warn: &mut impl FnMut(&'static str, f64, Result<String
 mod tests {
     use smalti_core::render::Level;
     use smalti_core::scene::world::{Camera, Material, Polygon, Sphere};
+    use smalti_core::settings::Settings;
 
     use super::*;
 
@@ -193,7 +189,7 @@ mod tests {
         let settings = Settings::default();
         let mut found = Vec::new();
         let patient = Patient { world, settings: &settings, level: Level::available()[0] };
-        check(&patient, &mut |finding| found.push((finding.case, finding.verdict, finding.says))).unwrap();
+        check(&patient, &mut |finding| found.push((finding.case, finding.verdict, finding.says)));
         found
     }
 

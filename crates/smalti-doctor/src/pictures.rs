@@ -12,7 +12,7 @@ use smalti_image::hash;
 use smalti_scheduler::{Cancel, Outcome, render};
 
 use crate::finding::{Finding, Verdict, counted};
-use crate::turned::{bounds, moved, scaled, size, smallest_lamp, turned};
+use crate::turned::{moved, scaled, size, smallest_lamp, turned};
 use crate::{DoctorError, Patient};
 
 /// Powers of two by which lengths are multiplied: no bit may change.
@@ -148,7 +148,7 @@ fn same_bits(what: (&'static str, impl Into<String>), expected: &Image, found: &
 
 /// What the light of the smallest lamp may change by because f64 is coarse where it is.
 fn coarseness(world: &World) -> f64 {
-    let largest = bounds(world).map_or(0.0, |(low, high)| low.abs().max(high.abs()).max_element());
+    let largest = world.bounds().map_or(0.0, |(low, high)| low.abs().max(high.abs()).max_element());
     let least = smallest_lamp(world).unwrap_or_else(|| size(world));
     4.0 * largest * f64::EPSILON / least
 }

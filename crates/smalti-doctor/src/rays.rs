@@ -9,7 +9,7 @@ use smalti_core::settings::{Integrator, Settings};
 
 use crate::double::{Hit, Ray, nearest};
 use crate::finding::{Finding, Verdict, counted};
-use crate::turned::{bounds, moved, size};
+use crate::turned::{moved, size};
 use crate::{DoctorError, Patient};
 
 /// Tests of a ray against a primitive in f64, in all.
@@ -66,7 +66,7 @@ pub fn check(patient: &Patient<'_>, pool: &ThreadPool, tell: &mut impl FnMut(Fin
     // What paths hit does not depend on the integrator; the path tracer needs no photons for it.
     let settings = Settings { integrator: Integrator::Path, ..patient.settings.clone() };
     // Beside the origin, where a metre has all the steps of f64: how coarse they are elsewhere is told apart.
-    let world = bounds(patient.world).map_or(patient.world.clone(), |(low, _)| moved(patient.world, -low));
+    let world = patient.world.bounds().map_or(patient.world.clone(), |(low, _)| moved(patient.world, -low));
     let renderer = pool.install(|| Renderer::new(&world, settings, patient.level))?;
     let tally = pool.install(|| compared(&renderer, &world));
     let Tally { rays, edges, off, leaks, self_hits, elsewhere, first } = tally;
@@ -99,8 +99,7 @@ fn compared(renderer: &Renderer, world: &World) -> Tally {
     let path = |number: usize| {
         let index = (number * 7919) % paths;
         let (pixel, sample) = (index % area.pixels(), (index / area.pixels()) as u32);
-        let (x, y) = (pixel as u32 % area.width, pixel as u32 / area.width);
-        of_path(&renderer.replay((area.x + x, area.y + y), sample).0, world, size)
+        of_path(&renderer.replay(area.pixel(pixel), sample).0, world, size)
     };
     let at_once = 256;
     for first in (0..paths).step_by(at_once) {

@@ -4,19 +4,9 @@ use glam::{DQuat, DVec3};
 use smalti_core::scene::World;
 use smalti_core::settings::Settings;
 
-/// Low and high corner of all geometry and of the lights without extent; `None` if there is nothing.
-pub fn bounds(world: &World) -> Option<(DVec3, DVec3)> {
-    let polygons = world.polygons.iter().flat_map(|polygon| polygon.vertices.iter().copied());
-    let meshes = world.meshes.iter().flat_map(|mesh| mesh.vertices.iter().copied());
-    let spheres = world.spheres.iter().flat_map(|ball| [ball.centre - ball.radius, ball.centre + ball.radius]);
-    let lights = world.point_lights.iter().map(|light| light.position);
-    let points = polygons.chain(meshes).chain(spheres).chain(lights).map(|point| (point, point));
-    points.reduce(|(low, high), (point, _)| (low.min(point), high.max(point)))
-}
-
 /// The largest extent of a scene; 1 where there is nothing, or a point.
 pub fn size(world: &World) -> f64 {
-    let extent = bounds(world).map_or(0.0, |(low, high)| (high - low).max_element());
+    let extent = world.bounds().map_or(0.0, |(low, high)| (high - low).max_element());
     if extent > 0.0 { extent } else { 1.0 }
 }
 
@@ -43,7 +33,7 @@ pub fn moved(world: &World, by: DVec3) -> World {
 
 /// Turned about its middle.
 pub fn turned(world: &World, by: DQuat) -> World {
-    let middle = bounds(world).map_or(DVec3::ZERO, |(low, high)| (low + high) / 2.0);
+    let middle = world.bounds().map_or(DVec3::ZERO, |(low, high)| (low + high) / 2.0);
     let mut turned = world.placed(1.0, |point| middle + by * (point - middle));
     turned.cameras.iter_mut().for_each(|camera| camera.up = by * camera.up);
     turned

@@ -12,8 +12,8 @@ const CHUNK: usize = 1 << 16;
 ///
 /// Hashed are, little-endian, with -0 as +0: for each list its length as u64 and its items (polygons, spheres, meshes,
 /// point lights, environment, cameras). Lengths of inner lists and indices are u64 and u32, all numbers f64; an option
-/// is a byte 0 or 1 and its value; a surface's material is a byte for the kind (lambert 0, mirror 1, dielectric 2, one that absorbs 3) and
-/// its numbers.
+/// is a byte 0 or 1 and its value; a surface's material is a byte for the kind (lambert 0, mirror 1, dielectric 2, one
+/// that absorbs 3) and its numbers.
 pub fn of(world: &World) -> String {
     let mut sink = Sink { hasher: Xxh3::new(), buffer: Vec::with_capacity(2 * CHUNK) };
     sink.surfaces(world);

@@ -11,6 +11,26 @@ use smalti_scheduler::Outcome;
 use crate::downsample;
 use crate::job::Job;
 
+/// Which render of which scene an object is about.
+#[derive(Debug, Serialize)]
+pub struct Subject<'a> {
+    pub version: &'static str,
+    pub scene: String,
+    pub scene_hash: &'a str,
+    #[serde(flatten)]
+    pub settings: SettingsRecord,
+}
+
+/// That of a job.
+pub fn subject(job: &Job) -> Subject<'_> {
+    Subject {
+        version: env!("CARGO_PKG_VERSION"),
+        scene: job.path.display().to_string(),
+        scene_hash: &job.scene_hash,
+        settings: settings(job),
+    }
+}
+
 /// Settings as users write them.
 #[derive(Debug, Serialize)]
 pub struct SettingsRecord {

@@ -7,21 +7,21 @@
 
 use std::process::ExitCode;
 
-use anyhow::{Context, Result, bail};
+use anyhow::Result;
 use rayon::prelude::*;
 use smalti_tests::accuracy::{KERNELS, Kernel, Worst};
+use smalti_tests::arguments::numbers;
 use smalti_tests::oracle::Random;
 
 /// Arguments of a piece of work, in thousands.
-const CHUNK: u32 = 100;
+const CHUNK: u64 = 100;
 
 fn main() -> Result<ExitCode> {
-    let (thousands, seed) = arguments()?;
+    let [thousands, seed] = numbers([("--thousands", 5000), ("--seed", 1)])?;
     println!("| kernel | domain | error | found | bound |\n|---|---|---|---:|---:|");
     let mut kept = true;
     for (number, Kernel { name, domain, measure, bound, worst }) in KERNELS.iter().enumerate() {
-        let chunk =
-            |chunk: u32| worst(&mut Random::new(seed << 32 | u64::from(chunk) << 8 | number as u64), 1000 * CHUNK);
+        let chunk = |chunk: u64| worst(&mut Random::new(seed << 32 | chunk << 8 | number as u64), 1000 * CHUNK as u32);
         let found = (0..thousands.div_ceil(CHUNK)).into_par_iter().map(chunk);
         let found = found.reduce(Worst::default, |a, b| a.or(b.error, b.at));
         kept &= found.error <= *bound;
@@ -31,18 +31,4 @@ fn main() -> Result<ExitCode> {
         }
     }
     Ok(if kept { ExitCode::SUCCESS } else { ExitCode::FAILURE })
-}
-
-fn arguments() -> Result<(u32, u64)> {
-    let (mut thousands, mut seed) = (5000, 1);
-    let mut words = std::env::args().skip(1);
-    while let Some(word) = words.next() {
-        let mut value = || words.next().with_context(|| format!("{word} needs a value"));
-        match word.as_str() {
-            "--thousands" => thousands = value()?.parse()?,
-            "--seed" => seed = value()?.parse()?,
-            other => bail!("unknown: {other}"),
-        }
-    }
-    Ok((thousands, seed))
 }

@@ -9,10 +9,11 @@
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use anyhow::{Context, Result, bail};
+use anyhow::Result;
 use glam::DVec3;
 use rayon::prelude::*;
 use smalti_core::accel::{Accel, List};
+use smalti_tests::arguments::numbers;
 use smalti_tests::build::at;
 use smalti_tests::closed::{SQUEEZES, leaks, shell};
 use smalti_tests::leaving::{Left, from_sphere, from_tetrahedron};
@@ -22,7 +23,7 @@ use smalti_tests::oracle::Random;
 const CHUNK: u64 = 1_000_000;
 
 fn main() -> Result<ExitCode> {
-    let (millions, seed) = arguments()?;
+    let [millions, seed] = numbers([("--millions", 1000), ("--seed", 1)])?;
     let leaked = aimed(millions, seed);
     println!("aimed at edges and corners of closed meshes: {millions} million rays, {leaked} of them found a way out");
     let (left, wrong) = leaving(millions, seed);
@@ -35,20 +36,6 @@ fn main() -> Result<ExitCode> {
     );
     wrong.iter().take(5).for_each(|wrong| println!("  {wrong}"));
     Ok(if leaked == 0 && wrong.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
-}
-
-fn arguments() -> Result<(u64, u64)> {
-    let (mut millions, mut seed) = (1000, 1);
-    let mut words = std::env::args().skip(1);
-    while let Some(word) = words.next() {
-        let mut value = || words.next().with_context(|| format!("{word} needs a value"));
-        match word.as_str() {
-            "--millions" => millions = value()?.parse()?,
-            "--seed" => seed = value()?.parse()?,
-            other => bail!("unknown: {other}"),
-        }
-    }
-    Ok((millions, seed))
 }
 
 /// Rays out of closed meshes, small ones in a list and large ones in a tree, of any shape and anywhere.

@@ -3,7 +3,7 @@
 use super::{Photons, Tag};
 use crate::lanes::Lanes;
 use crate::scene::Scene;
-use crate::stream::{PRIM, SLOT, Stream, THROUGHPUT, surface};
+use crate::stream::{PRIM, Stream, THROUGHPUT, surface};
 
 /// Stores the photons of a diffuse stream, with what `events` says of their slots (the scattering events after they were
 /// emitted). Returns how many were not finite and are left out.
@@ -35,18 +35,14 @@ pub fn run<L: Lanes>(
             }
             let tag = Tag::new(hits.value(PRIM, at + lane), outside >> lane & 1 == 1);
             photons.places.push([x, y, z, f32::from_bits(tag.0)]);
-            photons.flux.push([flux[0], flux[1], flux[2], f32::from_bits(events(slot(hits, at + lane)))]);
+            photons.flux.push([flux[0], flux[1], flux[2], f32::from_bits(events(hits.slot(at + lane)))]);
         }
     }
     nonfinite
 }
 
-fn slot(photons: &Stream, at: usize) -> usize {
-    photons.value(SLOT, at) as usize & 0xffff
-}
-
 /// Flux that photon `at` of a stream carries.
 pub fn flux(photons: &Stream, at: usize, power: &[f32]) -> [f32; 3] {
-    let power = power[slot(photons, at)];
+    let power = power[photons.slot(at)];
     photons.triple(THROUGHPUT, at).map(|share| share * power)
 }

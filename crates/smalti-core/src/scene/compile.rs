@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::frame::Frame;
-use super::media::{CLEAR, Media};
+use super::media::Media;
 use super::world::{Camera, Material, Rgb, World};
 use super::{Class, Face, Origin, Scene, Shade, View};
 use crate::light::table::LightTable;
@@ -44,10 +44,7 @@ impl Compiler<'_> {
         }
         self.scene.lights.finish();
         self.scene.views = world.cameras.iter().map(|camera| view(&self.scene.frame, camera)).collect();
-        if let Some(media) = Media::of(world, &self.scene) {
-            self.scene.views.iter_mut().zip(&media.views).for_each(|(view, medium)| view.medium = *medium);
-            self.scene.media = Some(media);
-        }
+        self.scene.media = Media::of(world, &self.scene);
         self.scene
     }
 
@@ -149,7 +146,7 @@ impl Compiler<'_> {
 }
 
 /// Twice the area times the normal (Newell's method, from the first corner: exact for what is far from the origin).
-fn newell(corners: &[DVec3]) -> DVec3 {
+pub fn newell(corners: &[DVec3]) -> DVec3 {
     corners[1..].windows(2).map(|pair| (pair[0] - corners[0]).cross(pair[1] - corners[0])).sum()
 }
 
@@ -178,7 +175,6 @@ fn view(frame: &Frame, camera: &Camera) -> View {
         forward: forward.as_vec3().to_array(),
         right: (right * reach).as_vec3().to_array(),
         up: (up * reach).as_vec3().to_array(),
-        medium: CLEAR,
     }
 }
 

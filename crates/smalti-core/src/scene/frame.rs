@@ -22,7 +22,7 @@ pub struct Frame {
 impl Frame {
     /// The frame of everything in `world` but its cameras.
     pub fn of(world: &World) -> Self {
-        let Some((low, high)) = bounds(world) else {
+        let Some((low, high)) = world.bounds() else {
             return Self { corner: DVec3::ZERO, half: DVec3::ZERO, scale: 1.0 };
         };
         let extent = high - low;
@@ -49,19 +49,6 @@ impl Frame {
 /// The largest power of two that is at most `x`, for positive normal `x`.
 fn power_of_two_below(x: f64) -> f64 {
     f64::from_bits(x.to_bits() & 0x7ff0_0000_0000_0000)
-}
-
-/// Bounding box of all geometry and point lights.
-fn bounds(world: &World) -> Option<(DVec3, DVec3)> {
-    let polygons = world.polygons.iter().flat_map(|polygon| polygon.vertices.iter().copied());
-    let meshes = world.meshes.iter().flat_map(|mesh| mesh.vertices.iter().copied());
-    let spheres =
-        world.spheres.iter().flat_map(|sphere| [sphere.centre - sphere.radius, sphere.centre + sphere.radius]);
-    let lights = world.point_lights.iter().map(|light| light.position);
-    polygons.chain(meshes).chain(spheres).chain(lights).fold(None, |so_far, p| match so_far {
-        None => Some((p, p)),
-        Some((low, high)) => Some((low.min(p), high.max(p))),
-    })
 }
 
 #[cfg(test)]

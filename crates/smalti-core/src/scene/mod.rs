@@ -9,7 +9,7 @@ pub mod frame;
 pub mod media;
 pub mod world;
 
-pub use compile::compile;
+pub use compile::{compile, newell};
 pub use frame::Frame;
 pub use media::Media;
 pub use world::World;
@@ -114,8 +114,6 @@ pub struct View {
     pub right: [f32; 3],
     /// Up, half the picture's height long at distance 1.
     pub up: [f32; 3],
-    /// Number of the medium that it is in.
-    pub medium: u32,
 }
 
 impl Scene {

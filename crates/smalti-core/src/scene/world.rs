@@ -28,6 +28,16 @@ pub struct World {
 }
 
 impl World {
+    /// Low and high corner of all geometry and of the lights without extent; `None` if there is nothing.
+    pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        let polygons = self.polygons.iter().flat_map(|polygon| polygon.vertices.iter().copied());
+        let meshes = self.meshes.iter().flat_map(|mesh| mesh.vertices.iter().copied());
+        let spheres = self.spheres.iter().flat_map(|ball| [ball.centre - ball.radius, ball.centre + ball.radius]);
+        let lights = self.point_lights.iter().map(|light| light.position);
+        let points = polygons.chain(meshes).chain(spheres).chain(lights).map(|point| (point, point));
+        points.reduce(|(low, high), (point, _)| (low.min(point), high.max(point)))
+    }
+
     /// The same world elsewhere: every point put where `place` says, with radii × `scale`, point lights × `scale`² and
     /// absorption ÷ `scale`, so that it looks the same where `place` multiplies all lengths by `scale`. What is up for a
     /// camera stays up.

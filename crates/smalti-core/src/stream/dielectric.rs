@@ -24,7 +24,7 @@ pub fn run<L: Lanes>(
         let crossing = Crossing::at(l, scene, fresnel, hits, at);
         let (u, _) = pair(l, sampler, hits.keys(l, at), bounce, Purpose::Lobe);
         let reflects = l.lt(u, crossing.reflectance);
-        let rays = crossing.rays(l, scene, reflects, hits, at, hits.v3(l, THROUGHPUT, at));
+        let rays = crossing.rays(l, reflects, hits, at, hits.v3(l, THROUGHPUT, at));
         next.scatter(l, hits, at, hits.active(l, at), &rays);
     }
 }
@@ -62,7 +62,7 @@ pub fn fork<L: Lanes>(
             let share = l.select(both, shares[usize::from(!reflect)], l.f(1.0));
             let share = if mutant!("fork_without_shares") { l.f(1.0) } else { share };
             let goes = both | if reflect { reflects } else { !reflects };
-            let rays = crossing.rays(l, scene, l.m(reflect), hits, at, throughput.scale(share));
+            let rays = crossing.rays(l, l.m(reflect), hits, at, throughput.scale(share));
             next.scatter(l, hits, at, hits.active(l, at) & goes, &rays);
         }
     }
@@ -79,7 +79,7 @@ pub fn split<L: Lanes>(l: L, scene: &Scene, fresnel: Fresnel, least: f32, hits: 
             let throughput = hits.v3(l, THROUGHPUT, at).scale(crossing.shares(l)[usize::from(!reflect)]);
             let enough = hits.active(l, at) & l.le(l.f(least), throughput.max_component(l));
             if l.any(enough) {
-                next.scatter(l, hits, at, enough, &crossing.rays(l, scene, l.m(reflect), hits, at, throughput));
+                next.scatter(l, hits, at, enough, &crossing.rays(l, l.m(reflect), hits, at, throughput));
             }
         }
     }
@@ -92,6 +92,8 @@ struct Crossing<L: Lanes> {
     side: V3<L>,
     boundary: Boundary<L>,
     reflectance: L::F,
+    /// What refracted rays travel in.
+    beyond: L::U,
 }
 
 impl<L: Lanes> Crossing<L> {
@@ -102,7 +104,11 @@ impl<L: Lanes> Crossing<L> {
         let cosine = -side.dot(l, hits.v3(l, DIRECTION, at));
         let boundary = boundary(l, [hit.colour.x, hit.colour.y, hit.colour.z], hit.outside, cosine);
         let reflectance = reflectance(l, fresnel, &boundary);
-        Self { hit, side, boundary, reflectance }
+        let beyond = match &scene.media {
+            Some(media) => media.beyond(l, hits.u(l, PRIM, at), hit.outside, hits.active(l, at)),
+            None => l.u(0),
+        };
+        Self { hit, side, boundary, reflectance, beyond }
     }
 
     /// What is reflected and what is refracted.
@@ -111,16 +117,9 @@ impl<L: Lanes> Crossing<L> {
         [self.reflectance, l.f(1.0) - self.reflectance]
     }
 
-    /// What refracted rays travel in.
-    #[inline(always)]
-    fn beyond(&self, l: L, scene: &Scene, hits: &Stream, at: usize) -> L::U {
-        let Some(media) = &scene.media else { return l.u(0) };
-        media.beyond(l, hits.u(l, PRIM, at), self.hit.outside, hits.active(l, at))
-    }
-
     /// The reflected rays where `reflects`, else the refracted ones.
     #[inline(always)]
-    fn rays(&self, l: L, scene: &Scene, reflects: L::M, hits: &Stream, at: usize, throughput: V3<L>) -> Scattered<L> {
+    fn rays(&self, l: L, reflects: L::M, hits: &Stream, at: usize, throughput: V3<L>) -> Scattered<L> {
         let incoming = hits.v3(l, DIRECTION, at);
         let eta = self.boundary.eta;
         let bend = l.mul_add(eta, self.boundary.cosine, -self.boundary.cosine_refracted);
@@ -139,7 +138,7 @@ impl<L: Lanes> Crossing<L> {
             leaves: self.hit.surface,
             pdf: hits.specular_pdf(l, at),
             eta: l.select(reflects, so_far, squeezed),
-            medium: l.select_u(reflects, hits.medium(l, at), self.beyond(l, scene, hits, at)),
+            medium: l.select_u(reflects, hits.medium(l, at), self.beyond),
         }
     }
 }

@@ -69,11 +69,11 @@ fn number_blocks(Rect { width, height, .. }: Rect, numbers: &mut Vec<u32>) {
     }
 }
 
-/// Writes the camera rays of sample `sample` of all pixels to slots `first..` of `rays`.
+/// Writes the camera rays of sample `sample` of all pixels to slots `first..` of `rays`; the camera is in `medium`.
 #[inline(always)]
 pub fn run<L: Lanes>(
     l: L,
-    (view, settings, used): (&View, &Settings, Columns),
+    (view, medium, settings, used): (&View, u32, &Settings, Columns),
     pixels: &Pixels,
     (sample, first): (u32, usize),
     rays: &mut Stream,
@@ -104,7 +104,7 @@ pub fn run<L: Lanes>(
             rays.set_f(l, ETA, to, l.f(1.0));
         }
         if used.medium {
-            rays.set_u(l, MEDIUM, to, l.u(view.medium));
+            rays.set_u(l, MEDIUM, to, l.u(medium));
         }
     }
     rays.set_len(first + pixels.count);

@@ -209,6 +209,11 @@ impl Stream {
         self.columns[column * self.stride + at]
     }
 
+    /// Slot of path `at`.
+    pub fn slot(&self, at: usize) -> usize {
+        self.value(SLOT, at) as usize & 0xffff
+    }
+
     /// Columns `column`, `column + 1`, `column + 2` of path `at`.
     pub fn triple(&self, column: usize, at: usize) -> [f32; 3] {
         [0, 1, 2].map(|k| f32::from_bits(self.value(column + k, at)))

@@ -1,5 +1,6 @@
 //! `smalti doctor`: a scene at its numerical extremes, or the hunt for the first value that cannot be.
 
+use std::mem::take;
 use std::sync::atomic::AtomicU64;
 
 use console::style;
@@ -17,7 +18,7 @@ use crate::args::{DoctorArgs, ImageArgs};
 use crate::exit::{Failure, Status};
 use crate::job::Job;
 use crate::print;
-use crate::record::{self, SettingsRecord};
+use crate::record::{self, Subject};
 
 /// The longer side of the pictures, where `--size` does not say otherwise.
 const SIDE: u32 = 64;
@@ -30,11 +31,8 @@ const AT_ONCE: u32 = 32;
 
 #[derive(Serialize)]
 struct Report<'a> {
-    version: &'static str,
-    scene: String,
-    scene_hash: &'a str,
     #[serde(flatten)]
-    settings: SettingsRecord,
+    subject: Subject<'a>,
     simd: &'static str,
     failed: usize,
     warnings: usize,
@@ -44,11 +42,8 @@ struct Report<'a> {
 /// The first value that cannot be.
 #[derive(Serialize)]
 struct Hunted<'a> {
-    version: &'static str,
-    scene: String,
-    scene_hash: &'a str,
     #[serde(flatten)]
-    settings: SettingsRecord,
+    subject: Subject<'a>,
     /// Null if there is none.
     impossible: Option<Found>,
 }
@@ -109,16 +104,7 @@ fn small(settings: Settings, typed: &ImageArgs) -> Settings {
 }
 
 fn report<'a>(job: &'a Job, findings: &'a [Finding], (failed, warnings): (usize, usize)) -> Report<'a> {
-    Report {
-        version: env!("CARGO_PKG_VERSION"),
-        scene: job.path.display().to_string(),
-        scene_hash: &job.scene_hash,
-        settings: record::settings(job),
-        simd: job.level.name(),
-        failed,
-        warnings,
-        findings,
-    }
+    Report { subject: record::subject(job), simd: job.level.name(), failed, warnings, findings }
 }
 
 fn line(finding: &Finding) -> String {
@@ -151,10 +137,7 @@ fn hunt(args: &DoctorArgs, job: &Job) -> Result<Status, Failure> {
     let none = format!("{} samples: every value is finite, and none is negative\n", samples(&job.settings));
     match (args.json, &found) {
         (true, _) => print::json(&Hunted {
-            version: env!("CARGO_PKG_VERSION"),
-            scene: job.path.display().to_string(),
-            scene_hash: &job.scene_hash,
-            settings: record::settings(job),
+            subject: record::subject(job),
             impossible: found.as_ref().map(|found| Found {
                 stage: found.stage.clone(),
                 bounce: found.bounce,
@@ -187,8 +170,10 @@ fn described(found: &Impossible, replay: &[pixel::VertexRecord]) -> String {
 fn first_impossible(renderer: &Renderer) -> Option<Impossible> {
     let settings = renderer.settings();
     let areas = areas(settings.area());
+    let mut pilots = Pilots::default();
     (0..settings.spp.div_ceil(ROUND)).find_map(|round| {
-        let maps = renderer.maps(round, Pilots::default(), &AtomicU64::new(0));
+        let maps = renderer.maps(round, take(&mut pilots), &AtomicU64::new(0));
+        pilots = maps.pilots();
         let samples = round * ROUND..settings.spp.min((round + 1) * ROUND);
         let look = |area: &Rect| renderer.hunt(*area, samples.clone(), &maps, &mut renderer.workspace());
         areas.par_iter().find_map_first(look)

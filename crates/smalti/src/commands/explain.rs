@@ -9,17 +9,14 @@ use smalti_core::scene::world::Material;
 use crate::args::ExplainArgs;
 use crate::exit::{Failure, Status};
 use crate::job::Job;
-use crate::record::{self, SettingsRecord};
+use crate::record::{self, Subject};
 use crate::table::{Align, table};
 use crate::{memory, print};
 
 #[derive(Serialize)]
 struct Explanation<'a> {
-    version: &'static str,
-    scene: String,
-    scene_hash: &'a str,
     #[serde(flatten)]
-    settings: SettingsRecord,
+    subject: Subject<'a>,
     contents: Contents,
     simd: &'static str,
     simd_available: Vec<&'static str>,
@@ -67,10 +64,7 @@ pub fn run(args: &ExplainArgs) -> Result<Status, Failure> {
 
 fn explanation<'a>(job: &'a Job, renderer: &'a Renderer) -> Explanation<'a> {
     Explanation {
-        version: env!("CARGO_PKG_VERSION"),
-        scene: job.path.display().to_string(),
-        scene_hash: &job.scene_hash,
-        settings: record::settings(job),
+        subject: record::subject(job),
         contents: contents(&job.world),
         simd: renderer.level().name(),
         simd_available: available(),

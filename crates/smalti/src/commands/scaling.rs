@@ -12,16 +12,13 @@ use crate::args::{ScalingArgs, Threads};
 use crate::exit::{Failure, Status};
 use crate::job::Job;
 use crate::print;
-use crate::record::{self, SettingsRecord};
+use crate::record::{self, Subject};
 use crate::table::{Align, table};
 
 #[derive(Serialize)]
 struct Report<'a> {
-    version: &'static str,
-    scene: String,
-    scene_hash: &'a str,
     #[serde(flatten)]
-    settings: SettingsRecord,
+    subject: Subject<'a>,
     simd: &'static str,
     tile: u32,
     reps: u32,
@@ -190,10 +187,7 @@ fn report<'a>(
     results: &'a [Row],
 ) -> Report<'a> {
     Report {
-        version: env!("CARGO_PKG_VERSION"),
-        scene: job.path.display().to_string(),
-        scene_hash: &job.scene_hash,
-        settings: record::settings(job),
+        subject: record::subject(job),
         simd: job.level.name(),
         tile: job.tile(args.work.tile),
         reps: args.reps,
