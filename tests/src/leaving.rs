@@ -143,6 +143,8 @@ fn vector(v: V3<One>) -> DVec3 {
 
 /// A direction to the side of the normal: any, or one that grazes.
 fn outward(random: &mut Random, normal: DVec3) -> DVec3 {
+    // Of unit length in f64 too: else a direction next to the normal, made flat, has a share of it left.
+    let normal = normal.normalize();
     let any = random.cosine_about(normal);
     let flat = (any - any.dot(normal) * normal).normalize_or(normal.any_orthonormal_vector());
     if random.unit() < 0.5 { any } else { (flat + 1e-3 * random.unit() * normal).normalize() }

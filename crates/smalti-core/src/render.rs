@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::film::{Counts, ROUND, Shift, Tile};
 pub use crate::lanes::Level;
 use crate::lanes::dispatch;
+use crate::mutant::mutant;
 use crate::photon::gather::Gather;
 use crate::photon::maps::{Layer, Maps};
 use crate::photon::pass::PhotonWorkspace;
@@ -409,6 +410,10 @@ fn deposit(
     let mut counts = tile.counts;
     for (number, sample) in samples.enumerate() {
         deposit_sample(workspace, tile, (number, sample), (&counts, weight.unwrap_or(1.0)), work);
+        if mutant!("a_round_counted_twice") && sample / ROUND == 1 {
+            deposit_sample(workspace, tile, (number, sample), (&counts, weight.unwrap_or(1.0)), work);
+            counts.weights[counts.batch()] += 1.0;
+        }
         match weight {
             Some(weight) => counts.add(weight),
             None => counts.add_plain(),

@@ -7,8 +7,9 @@
 use std::collections::HashMap;
 
 use super::MISS;
-use crate::geometry::{Ray, polygon, ray, sphere};
+use crate::geometry::{Ray, grazing, polygon, ray, sphere};
 use crate::lanes::{Lanes, V3};
+use crate::mutant::mutant;
 use crate::scene::Scene;
 
 /// Most corners, and most edges, that a list can hold: corners are numbered in 8 bits.
@@ -136,6 +137,9 @@ impl List {
             let [a, b] = edge.map(|i| scratch.corners[usize::from(i)]);
             let side = ray::edge(a, b);
             *signs = (l.le(zero, side), l.le(side, zero));
+            if mutant!("open_edges") {
+                *signs = (l.lt(zero, side), l.lt(side, zero));
+            }
         }
     }
 
@@ -180,12 +184,22 @@ impl List {
     #[inline(always)]
     fn face_distance<L: Lanes>(&self, l: L, ray: &Ray<L>, face: &ListFace, inside: L::M) -> L::F {
         let [nx, ny, nz, offset] = face.plane;
-        let (t, grazing) = polygon::distance(l, ray, V3::splat(l, [nx, ny, nz]), l.f(offset));
-        if l.any(inside & grazing) {
-            let clamped = polygon::clamp_to_box(l, ray, t, V3::splat(l, face.low), V3::splat(l, face.high));
-            return l.select(grazing, clamped, t);
+        let plane = (V3::splat(l, [nx, ny, nz]), l.f(offset));
+        let (t, grazing) = polygon::distance(l, ray, plane.0, plane.1);
+        let grazing = inside & grazing;
+        if l.any(grazing) {
+            let bounds = [V3::splat(l, face.low), V3::splat(l, face.high)];
+            let made_good = grazing::distance(l, ray, (t, grazing), plane, bounds, |_| self.corners_of(face));
+            return l.select(grazing, made_good, t);
         }
         t
+    }
+
+    /// A face's corners in their order.
+    fn corners_of(&self, face: &ListFace) -> impl Iterator<Item = [f32; 3]> {
+        let sides = &self.sides[face.sides.0 as usize..face.sides.1 as usize];
+        // The first of an edge's two corners, or the second where the face runs along it backwards.
+        sides.iter().map(|side| self.corners[usize::from(self.edges[usize::from(side >> 1)][usize::from(side & 1)])])
     }
 }
 
@@ -213,7 +227,8 @@ impl<'a, L: Lanes> Tracer<'a, L> {
             let inside = self.list.inside(face, &self.scratch, elsewhere);
             if l.any(inside) {
                 let t = self.list.face_distance(l, ray, face, inside);
-                let nearer = inside & l.lt(zero, t) & l.lt(t, best);
+                let nearest = if mutant!("tie_by_the_higher_index") { l.le(t, best) } else { l.lt(t, best) };
+                let nearer = inside & l.lt(zero, t) & nearest;
                 best = l.select(nearer, t, best);
                 prim = l.select_u(nearer, l.u(face.prim), prim);
             }

@@ -8,9 +8,10 @@ pub mod list;
 pub mod occluders;
 
 use crate::geometry::Ray;
-use crate::lanes::{Lanes, V3};
+use crate::geometry::lone::Unpacked;
+use crate::lanes::Lanes;
 use crate::scene::{Origin, Scene};
-use bvh::{Lone, Tree};
+use bvh::Tree;
 pub use list::List;
 
 /// No primitive.
@@ -128,34 +129,5 @@ impl<'a, L: Lanes> Tracer<'a, L> {
             stopped = stopped | l.eq_u(l.load_u(&answers), l.u(1));
         }
         stopped
-    }
-}
-
-/// The rays of a packet, one by one.
-struct Unpacked {
-    columns: [[f32; 16]; 6],
-    leaves: [u32; 16],
-}
-
-impl Unpacked {
-    #[inline(always)]
-    fn new<L: Lanes>(l: L, ray: &Ray<L>) -> Self {
-        let mut unpacked = Self { columns: [[0.0; 16]; 6], leaves: [0; 16] };
-        let V3 { x, y, z } = ray.origin;
-        let V3 { x: dx, y: dy, z: dz } = ray.direction;
-        for (column, values) in unpacked.columns.iter_mut().zip([x, y, z, dx, dy, dz]) {
-            l.store(values, column);
-        }
-        l.store_u(ray.leaves, &mut unpacked.leaves);
-        unpacked
-    }
-
-    #[inline(always)]
-    fn lone(&self, lane: usize) -> Lone {
-        let [ox, oy, oz, dx, dy, dz] = [0, 1, 2, 3, 4, 5].map(
-            #[inline(always)]
-            |k: usize| self.columns[k][lane],
-        );
-        Lone { origin: [ox, oy, oz], direction: [dx, dy, dz], leaves: self.leaves[lane] }
     }
 }

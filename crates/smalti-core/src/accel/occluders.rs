@@ -5,6 +5,7 @@
 //! at its end. For rays to infinity nothing is pruned.
 
 use crate::light::table::Kind;
+use crate::mutant::mutant;
 use crate::scene::{Face, Scene};
 
 /// Primitives that may occlude, in increasing order.
@@ -16,7 +17,7 @@ pub fn of(scene: &Scene) -> Vec<u32> {
 
 /// Whether no ray between two points of the scene can be stopped by this face.
 fn prunable(scene: &Scene, face: &Face) -> bool {
-    if scene.lights.has(Kind::Sky) {
+    if scene.lights.has(Kind::Sky) && !mutant!("occluder_of_the_sky_pruned") {
         return false;
     }
     scene.lights.surfaces.iter().all(|surface| *surface == face.surface)
@@ -29,7 +30,7 @@ fn prunable(scene: &Scene, face: &Face) -> bool {
 fn everything_beside(scene: &Scene, face: &Face, side: f64) -> bool {
     let [nx, ny, nz, d] = face.plane.map(|x| side * f64::from(x));
     let height = |p: &[f32]| nx * f64::from(p[0]) + ny * f64::from(p[1]) + nz * f64::from(p[2]) - d;
-    let tolerance = 4e-7;
+    let tolerance = if mutant!("occluder_pruned_that_can_occlude") { 0.5 } else { 4e-7 };
     let lights = scene.lights.rows.iter().zip(&scene.lights.kinds);
     scene.vertices.iter().all(|v| height(v) >= -tolerance)
         && scene.spheres.iter().all(|s| height(s) - f64::from(s[3]) >= -tolerance)

@@ -14,6 +14,7 @@ mod image;
 
 pub use image::Image;
 
+use crate::mutant::mutant;
 use crate::settings::Rect;
 
 /// Samples in a round; a power of two.
@@ -34,6 +35,9 @@ impl Pixel {
     pub fn add(&mut self, batch: usize, weight: f64, radiance: [f32; 3]) {
         for (sum, value) in self.sums[batch].iter_mut().zip(radiance) {
             *sum += weight * f64::from(value);
+            if mutant!("film_in_f32") {
+                *sum = f64::from(*sum as f32);
+            }
         }
     }
 
@@ -56,7 +60,8 @@ impl Pixel {
             let means: [f64; BATCHES] = std::array::from_fn(|k| self.batch_mean(counts, k)[c]);
             let mean = means.iter().zip(sizes).map(|(mean, size)| mean * size).sum::<f64>() / all;
             let spread = means.iter().zip(sizes).map(|(of, size)| size * (of - mean) * (of - mean)).sum::<f64>();
-            spread / (used - 1) as f64 / counts.size_of_all()
+            let freedom = if mutant!("variance_by_batches") { used } else { used - 1 };
+            spread / freedom as f64 / counts.size_of_all()
         };
         Some(std::array::from_fn(of_channel))
     }

@@ -12,6 +12,7 @@ const ERROR: f32 = 24.0 / 16_777_216.0;
 #[inline(always)]
 pub fn leave<L: Lanes>(l: L, point: V3<L>, scale: L::F, normal: V3<L>) -> V3<L> {
     let error = if mutant!("any_positive_distance") { 0.0 } else { ERROR };
+    let scale = if mutant!("absolute_epsilon") { l.f(1e-4 / ERROR) } else { scale };
     point.along(l, scale * l.f(error), normal)
 }
 

@@ -38,17 +38,6 @@ pub fn within<L: Lanes>(l: L, ray: &Ray<L>, normal: V3<L>, offset: L::F) -> (L::
     (l.lt(l.f(0.0), towards) & l.lt(towards, l.abs(cosine)), grazing)
 }
 
-/// `t` clamped to where the ray is inside the box: a grazing ray's distance is ill-conditioned, but the hit cannot lie
-/// outside the face's box; ∞ where the ray passes beside the box, or runs along the plane. The same arithmetic as the
-/// tree's box test, so the tree never culls a hit of the list.
-#[inline(always)]
-pub fn clamp_to_box<L: Lanes>(l: L, ray: &Ray<L>, t: L::F, low: V3<L>, high: V3<L>) -> L::F {
-    let inverse = inverse_direction(l, ray.direction);
-    let (near, far) = slab(l, around(l, ray.origin), inverse, low, high);
-    let never = l.f(f32::INFINITY);
-    l.select(l.le(near, far) & l.lt(l.abs(t), never), l.max(l.min(t, far), near), never)
-}
-
 /// 1 / d with ±MAX in place of ±∞, so that 0 · ∞ cannot arise.
 #[inline(always)]
 pub fn inverse_direction<L: Lanes>(l: L, d: V3<L>) -> V3<L> {
@@ -66,7 +55,8 @@ fn inverse<L: Lanes>(l: L, x: L::F) -> L::F {
 /// plane of a side.
 #[inline(always)]
 pub fn around<L: Lanes>(l: L, origin: V3<L>) -> [V3<L>; 2] {
-    let e = l.max(origin.max_abs(l), l.f(1.0)) * l.f(1.0 / 524_288.0);
+    let wider = if mutant!("boxes_not_widened") { 0.0 } else { 1.0 / 524_288.0 };
+    let e = l.max(origin.max_abs(l), l.f(1.0)) * l.f(wider);
     [V3::new(origin.x - e, origin.y - e, origin.z - e), V3::new(origin.x + e, origin.y + e, origin.z + e)]
 }
 

@@ -74,6 +74,9 @@ pub fn run<L: Lanes>(
         push.v3(ORIGIN, source.origin).v3(DIRECTION, direction).u(LEAVES, source.surface);
         push.v3(THROUGHPUT, source.radiance.scale(l.f(1.0) / brightest));
         push.u(KEY, l.u(key)).u(SLOT, (index & l.u(0xffff_0000)) | slot);
+        if mutant!("n_squared_for_photons") {
+            push.f(crate::stream::ETA, l.f(1.0));
+        }
         if let Some(media) = emission.media {
             push.u(MEDIUM, l.gather_u(&media.lights, row));
         }

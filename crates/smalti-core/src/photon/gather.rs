@@ -13,6 +13,7 @@ use super::kd_tree::{BLOCK, Block, Tree};
 use super::surfaces::Group;
 use super::{Map, Surfaces, Tag};
 use crate::lanes::{Lanes, One, Rgb, V3};
+use crate::mutant::mutant;
 
 /// Photons this much of the radius above or below the disc do not count.
 pub const FLAT: f32 = 0.25;
@@ -72,7 +73,9 @@ impl Gather<'_> {
         let part = self.surfaces.part_of_disc(l, something, prim, point, radius);
         let cut = something & l.lt(part, l.f(1.0));
         let inner_part = if l.any(cut) { self.surfaces.part_of_disc(l, cut, prim, point, small) } else { l.f(1.0) };
-        let (whole, half) = (radius * radius * part, small * small * inner_part);
+        let part = if mutant!("edges_of_surfaces_darkened") { l.f(1.0) } else { part };
+        let squared = if mutant!("gather_radius_not_squared") { radius } else { radius * radius };
+        let (whole, half) = (squared * part, small * small * inner_part);
         let by = l.f(core::f32::consts::FRAC_1_PI);
         Found { irradiance: found.irradiance.scale(by / whole), inner: found.inner.scale(by / half) }
     }
@@ -187,7 +190,7 @@ impl Gather<'_> {
             let k = others.trailing_zeros() as usize % 16;
             let tag = Tag(tags[first + k].to_bits());
             let alike = self.surfaces.alike(One, tag, point.group, V3::splat(One, point.normal));
-            seen |= u64::from(alike) << k;
+            seen |= u64::from(alike || mutant!("photons_of_other_surfaces")) << k;
             others &= others - 1;
         }
         (seen, squared)

@@ -100,7 +100,8 @@ pub struct PhotonWorkspace {
 impl PhotonWorkspace {
     /// Buffers for photons in `scene`.
     pub fn new(scene: &Scene) -> Self {
-        let columns = Columns { medium: scene.media.is_some(), ..Columns::default() };
+        let eta = mutant!("n_squared_for_photons");
+        let columns = Columns { eta, medium: scene.media.is_some(), ..Columns::default() };
         let stream = || Stream::new(PHOTONS as usize, columns);
         Self {
             photons: stream(),
@@ -137,6 +138,10 @@ impl Renderer {
         // What the limit on bounces cuts off ends where it is.
         add(&mut traced.account.absorbed, sum(&workspace.photons, &workspace.slots.power));
         traced.account.kept = traced.photons.len() as u64;
+        if mutant!("flux_by_photons_stored") {
+            let scale = batch.count as f32 / traced.photons.len().max(1) as f32;
+            traced.photons.flux.iter_mut().for_each(|[r, g, b, _]| [r, g, b].into_iter().for_each(|x| *x *= scale));
+        }
         traced
     }
 

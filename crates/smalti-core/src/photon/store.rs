@@ -2,6 +2,7 @@
 
 use super::{Photons, Tag};
 use crate::lanes::Lanes;
+use crate::mutant::mutant;
 use crate::scene::Scene;
 use crate::stream::{PRIM, Stream, THROUGHPUT, surface};
 
@@ -43,6 +44,10 @@ pub fn run<L: Lanes>(
 
 /// Flux that photon `at` of a stream carries.
 pub fn flux(photons: &Stream, at: usize, power: &[f32]) -> [f32; 3] {
-    let power = power[photons.slot(at)];
+    let mut power = power[photons.slot(at)];
+    // Photons carry flux; the square of the index is for radiance.
+    if mutant!("n_squared_for_photons") {
+        power *= f32::from_bits(photons.value(crate::stream::ETA, at));
+    }
     photons.triple(THROUGHPUT, at).map(|share| share * power)
 }

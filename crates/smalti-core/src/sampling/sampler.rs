@@ -2,6 +2,7 @@
 
 use super::{sobol, xoshiro};
 use crate::lanes::Lanes;
+use crate::mutant::mutant;
 use crate::settings::SamplerKind;
 
 /// What a pair of numbers is for. The value keys the set; a new purpose takes a new value and shifts no other.
@@ -45,6 +46,7 @@ pub fn pixel_key(seed: u64, x: u32, y: u32, round: u32) -> u32 {
 
 /// Hash of (seed, map, round, sub-map, set): the key of a set of up to 65,536 photons.
 pub fn photon_key(seed: u64, map: u32, round: u32, sub_map: u32, set: u32) -> u32 {
+    let seed = if mutant!("seed_ignored_by_photons") { 0 } else { seed };
     key(mix(seed as u32 ^ 0x85eb_ca6b), [(seed >> 32) as u32, map, round, sub_map, set])
 }
 
@@ -93,7 +95,9 @@ impl<L: Lanes> Fan<L> {
     #[inline(always)]
     pub fn new(l: L, kind: SamplerKind, keys: Keys<L>, bounce: u32, purpose: Purpose, count: u32) -> Self {
         let salt = mix(bounce.wrapping_mul(8).wrapping_add(purpose as u32).wrapping_add(0x51ed_270b));
-        let seed = mix_lanes(l, keys.key ^ l.u(salt));
+        // The same numbers in every pixel, whatever the seed.
+        let unkeyed = mutant!("seed_ignored_by_bounces") && purpose == Purpose::Bsdf;
+        let seed = if unkeyed { l.u(salt) } else { mix_lanes(l, keys.key ^ l.u(salt)) };
         let room = room(count);
         let base = match kind {
             SamplerKind::Sobol => sobol::scrambled_pair(l, keys.index, seed, room),

@@ -144,7 +144,8 @@ fn trace<L: Lanes>(l: L, tracer: &mut Tracer<'_, L>, rays: &Stream, sums: &mut [
     for at in (0..rays.len()).step_by(L::WIDTH) {
         let active = rays.active(l, at);
         let ray = Ray::new(l, rays.v3(l, ORIGIN, at), rays.v3(l, DIRECTION, at), rays.u(l, LEAVES, at));
-        let mut lit = l.bitmask(active & !tracer.occluded(l, &ray, rays.u(l, PRIM, at), active));
+        let unshadowed = mutant!("shadow_rays_not_traced");
+        let mut lit = l.bitmask(active & (l.m(unshadowed) | !tracer.occluded(l, &ray, rays.u(l, PRIM, at), active)));
         while lit != 0 {
             let lane = at + lit.trailing_zeros() as usize;
             let vertex = rays.value(SLOT, lane) as usize;
@@ -242,7 +243,7 @@ impl<L: Lanes> Receiver<L> {
             seen: known & seen,
             by_photons: l.select(verified, l.f(1.0 - ONE_IN as f32), one),
             asks: (doubt & !known) | verified,
-            by_ray: l.select(verified, l.f(ONE_IN as f32), one),
+            by_ray: if mutant!("doubt_not_made_up_for") { one } else { l.select(verified, l.f(ONE_IN as f32), one) },
         }
     }
 
@@ -259,7 +260,8 @@ impl<L: Lanes> Receiver<L> {
         let incident = sample(l, context.lights, row, (self.point, self.normal), self.place.pair(l, number));
         let cosine = self.normal.dot(l, incident.reach);
         // Lₑ · cosθ / (N·p + q) with q = cosθ/π: as cosθ / p = top / bottom, that is Lₑ · top / (N · bottom + top / π).
-        let (top, bottom) = (cosine * incident.spread.0, incident.spread.1);
+        let counted = if mutant!("no_cosine_at_the_receiver") { incident.reach.length(l) } else { cosine };
+        let (top, bottom) = (counted * incident.spread.0, incident.spread.1);
         let by_chance = if context.weighed { l.keep(incident.by_chance, top * l.f(FRAC_1_PI)) } else { l.f(0.0) };
         let count = l.f(shadow_rays as f32);
         let irradiance = incident.radiance.scale(top / l.mul_add(count, bottom, by_chance));

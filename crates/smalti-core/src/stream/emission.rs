@@ -37,6 +37,8 @@ pub fn run<L: Lanes>(
         let by_light = pdf_of_hit(l, &emitter, &[x, y, z, w], is_sphere, (origin, wi, t));
         let balanced = by_scatter / l.mul_add(l.f(shadow_rays as f32), by_light, by_scatter);
         let scattered = l.lt(l.f(0.0), by_scatter);
+        // The power heuristic here and the balance heuristic there.
+        let balanced = if mutant!("weights_do_not_sum_to_one") { balanced * balanced } else { balanced };
         // Report §2.5 and 2.7 together: light by shadow rays and again when it is hit.
         let balanced = if mutant!("emission_counted_twice") { l.f(1.0) } else { balanced };
         // Report §2.7: light by shadow rays alone, so that specular chains never meet a lamp.

@@ -2,6 +2,7 @@
 
 use super::{SLOT, Slots, Stream, THROUGHPUT};
 use crate::lanes::{Lanes, V3};
+use crate::mutant::mutant;
 
 /// Adds the environment's radiance.
 #[inline(always)]
@@ -9,6 +10,8 @@ pub fn run<L: Lanes>(l: L, radiance: [f32; 3], escaped: &Stream, slots: &mut Slo
     let radiance = V3::splat(l, radiance);
     for at in (0..escaped.len()).step_by(L::WIDTH) {
         let arrives = escaped.v3(l, THROUGHPUT, at) * radiance.scale(escaped.eta(l, at));
-        slots.add(l, escaped.active(l, at), escaped.u(l, SLOT, at), arrives);
+        let active = escaped.active(l, at);
+        let counts = if mutant!("environment_hit_pruned") { escaped.comes_from_camera(l, at) } else { active };
+        slots.add(l, active & counts, escaped.u(l, SLOT, at), arrives);
     }
 }

@@ -5,6 +5,7 @@ use super::{Columns, DIRECTION, ETA, KEY, LEAVES, MEDIUM, ORIGIN, PDF, SLOT, Str
 use crate::film::ROUND;
 use crate::lanes::{Lanes, V3};
 use crate::light::table::NO_SURFACE;
+use crate::mutant::mutant;
 use crate::sampling::{Keys, Purpose, pair, sampler::pixel_key};
 use crate::scene::View;
 use crate::settings::{Rect, Settings};
@@ -113,5 +114,8 @@ pub fn run<L: Lanes>(
 /// The place in the pixel.
 #[inline(always)]
 fn place<L: Lanes>(l: L, settings: &Settings, keys: Keys<L>) -> (L::F, L::F) {
+    if mutant!("half_a_pixel_off") {
+        return (l.f(0.0), l.f(0.0));
+    }
     if settings.jitter { pair(l, settings.sampler, keys, 0, Purpose::Film) } else { (l.f(0.5), l.f(0.5)) }
 }

@@ -2,6 +2,7 @@
 
 use super::{DIRECTION, Scattered, Stream, THROUGHPUT, roulette, surface};
 use crate::lanes::{Lanes, V3};
+use crate::mutant::mutant;
 use crate::sampling::{Purpose, pair};
 use crate::scene::Scene;
 use crate::settings::SamplerKind;
@@ -22,7 +23,8 @@ pub fn run<L: Lanes>(l: L, scene: &Scene, ending: Ending, bounce: u32, hits: &St
     for at in (0..hits.len()).step_by(L::WIDTH) {
         let hit = surface::hit(l, scene, hits, at);
         let incoming = hits.v3(l, DIRECTION, at);
-        let throughput = hits.v3(l, THROUGHPUT, at) * hit.colour;
+        let arrives = hits.v3(l, THROUGHPUT, at);
+        let throughput = if mutant!("mirrors_colourless") { arrives } else { arrives * hit.colour };
         let (survives, throughput) = match ending {
             Ending::Roulette(sampler) => {
                 let (u, _) = pair(l, sampler, hits.keys(l, at), bounce, Purpose::Roulette);

@@ -23,6 +23,7 @@ pub mod surface;
 pub use slots::Slots;
 
 use crate::lanes::{Lanes, V3};
+use crate::mutant::mutant;
 use crate::sampling::Keys;
 
 /// Three columns: where the ray starts; after [`surface`] the point it hit, moved off the surface.
@@ -144,7 +145,8 @@ impl Stream {
     /// Lanes of the packet at `at` that are paths.
     #[inline(always)]
     pub fn active<L: Lanes>(&self, l: L, at: usize) -> L::M {
-        l.first((self.len - at).min(L::WIDTH))
+        let lost = usize::from(mutant!("last_lane_lost") && at > 0);
+        l.first((self.len - at - lost).min(L::WIDTH))
     }
 
     /// A packet of a column.
@@ -312,6 +314,10 @@ impl Stream {
     /// What [`PDF`] becomes by a specular bounce.
     #[inline(always)]
     pub fn specular_pdf<L: Lanes>(&self, l: L, at: usize) -> L::F {
+        // What a lamp is weighed by after a mirror is then the density of the diffuse bounce before it.
+        if mutant!("specular_flag_not_set") && self.used.pdf {
+            return self.f(l, PDF, at);
+        }
         if !self.used.marks {
             return l.f(0.0);
         }

@@ -16,7 +16,15 @@ pub fn run<L: Lanes>(l: L, throughput: Rgb<L>, u: L::F) -> (L::M, Rgb<L>) {
     let chance = throughput.max_component(l) * l.f(SPARED);
     let certain = l.le(l.f(1.0), chance);
     let scale = l.select(certain, l.f(1.0), l.f(1.0) / chance);
-    let survives = certain | l.lt(u, chance);
+    let mut survives = certain | l.lt(u, chance);
+    // The chance by one measure of a colour, the weight by another.
+    if mutant!("roulette_by_luminance") {
+        let luminance = throughput.dot(l, V3::splat(l, [0.2126, 0.7152, 0.0722]));
+        survives = l.lt(u, luminance * l.f(SPARED));
+    }
+    if mutant!("roulette_without_division") {
+        return (survives, throughput);
+    }
     // As the report prints it: whoever survives goes on with full weight in every channel.
     if mutant!("roulette_without_channels") {
         return (survives, V3::splat(l, [1.0; 3]));

@@ -3,6 +3,7 @@
 use super::{PRIM, Stream};
 use crate::accel::MISS;
 use crate::lanes::Lanes;
+use crate::mutant::mutant;
 use crate::scene::{Class, Scene};
 
 /// Where hits are sorted to; a stream that the plan has no stage for is `None`.
@@ -24,7 +25,7 @@ pub fn run<L: Lanes>(l: L, scene: &Scene, ends: bool, rays: &Stream, bins: &mut 
         let missed = l.eq_u(prim, l.u(MISS));
         let hit = active & !missed;
         push(l, bins.escaped.as_deref_mut(), rays, at, active & missed);
-        if !l.any(hit) {
+        if !l.any(hit) || (ends && mutant!("paths_dropped_at_the_depth_cap")) {
             continue;
         }
         let code = l.gather_u(&scene.classes, l.select_u(hit, prim, l.u(0)));

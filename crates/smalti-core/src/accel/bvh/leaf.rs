@@ -2,7 +2,7 @@
 
 use super::WIDTH;
 use crate::accel::MISS;
-use crate::geometry::{Ray, polygon, ray, sphere};
+use crate::geometry::{Ray, grazing, polygon, ray, sphere};
 use crate::lanes::{Lanes, One, V3};
 use crate::light::table::NO_SURFACE;
 use crate::scene::Scene;
@@ -67,10 +67,13 @@ impl Packet {
             #[inline(always)]
             |k| l.load(&self.plane[k]),
         );
-        let (mut t, grazing) = polygon::distance(l, ray, V3::new(nx, ny, nz), offset);
-        if l.any(inside & grazing) {
-            let (low, high) = bounds(l, a, b, c);
-            t = l.select(grazing, polygon::clamp_to_box(l, ray, t, low, high), t);
+        let plane = (V3::new(nx, ny, nz), offset);
+        let (mut t, grazing) = polygon::distance(l, ray, plane.0, plane.1);
+        let grazing = inside & grazing;
+        if l.any(grazing) {
+            let corners = |lane: usize| self.corners.iter().map(move |corner| corner.map(|axis| axis[lane]));
+            let made_good = grazing::distance(l, ray, (t, grazing), plane, bounds(l, a, b, c), corners);
+            t = l.select(grazing, made_good, t);
         }
         (t, inside & l.lt(zero, t) & l.le(t, l.f(limit)) & l.lt(t, l.f(f32::INFINITY)))
     }
@@ -87,10 +90,10 @@ impl Packet {
 }
 
 #[inline(always)]
-fn bounds<L: Lanes>(l: L, a: V3<L>, b: V3<L>, c: V3<L>) -> (V3<L>, V3<L>) {
+fn bounds<L: Lanes>(l: L, a: V3<L>, b: V3<L>, c: V3<L>) -> [V3<L>; 2] {
     let low = V3::new(l.min(a.x, l.min(b.x, c.x)), l.min(a.y, l.min(b.y, c.y)), l.min(a.z, l.min(b.z, c.z)));
     let high = V3::new(l.max(a.x, l.max(b.x, c.x)), l.max(a.y, l.max(b.y, c.y)), l.max(a.z, l.max(b.z, c.z)));
-    (low, high)
+    [low, high]
 }
 
 /// A primitive that is not a triangle.
@@ -152,9 +155,11 @@ impl Single {
                 if !inside(corners, ray) {
                     return f32::INFINITY;
                 }
-                let (mut t, grazing) = polygon::distance(One, ray, V3::new(*nx, *ny, *nz), *offset);
+                let plane = (V3::new(*nx, *ny, *nz), *offset);
+                let (mut t, grazing) = polygon::distance(One, ray, plane.0, plane.1);
                 if grazing {
-                    t = polygon::clamp_to_box(One, ray, t, V3::splat(One, *low), V3::splat(One, *high));
+                    let bounds = [*low, *high].map(|corner| V3::splat(One, corner));
+                    t = grazing::distance(One, ray, (t, grazing), plane, bounds, |_| corners.iter().copied());
                 }
                 if t > 0.0 { t } else { f32::INFINITY }
             }

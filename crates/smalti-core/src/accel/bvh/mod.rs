@@ -10,7 +10,6 @@ mod search;
 
 pub use build::build;
 use leaf::{Packet, Single};
-pub use search::Lone;
 
 /// Children of a node.
 const WIDTH: usize = 8;

@@ -2,19 +2,8 @@
 
 use super::{LEAF, Leaf, Node, Tree, WIDTH};
 use crate::accel::SLACK;
-use crate::geometry::{Ray, polygon};
-use crate::lanes::{Lanes, One, V3};
-
-/// A single ray as it comes out of a packet.
-#[derive(Clone, Copy, Debug)]
-pub struct Lone {
-    /// Where it starts.
-    pub origin: [f32; 3],
-    /// Where it goes.
-    pub direction: [f32; 3],
-    /// Surface that it leaves.
-    pub leaves: u32,
-}
+use crate::geometry::{Lone, Ray, polygon};
+use crate::lanes::{Lanes, V3};
 
 /// A ray prepared for the tree.
 struct Probe<L: Lanes> {
@@ -147,12 +136,6 @@ impl Tree {
         let unit = l.max(ray.origin.max_abs(l), l.f(1.0)) / ray.major;
         let slack = unit * l.f(SLACK);
         l.le(near, far + unit * l.f(1.0 / 1_048_576.0)) & l.le(near, limit + slack) & l.le(-slack, far)
-    }
-}
-
-impl Lone {
-    fn ray(&self) -> Ray<One> {
-        Ray::new(One, V3::splat(One, self.origin), V3::splat(One, self.direction), self.leaves)
     }
 }
 
