@@ -6,6 +6,7 @@ pub mod build;
 pub mod closed;
 pub mod draw;
 pub mod estimate;
+pub mod fuzz;
 pub mod leaving;
 pub mod oracle;
 pub mod photons;
