@@ -64,6 +64,10 @@ accuracy *FLAGS:
 rays *FLAGS:
     cargo run --release --quiet --package smalti-tests --bin rays -- {{FLAGS}}
 
-# Put each known mistake in and see that a test notices (about half an hour)
+# Make each known mistake and see that a test notices: the table of docs/mutants.md (about an hour)
 mutants *NAMES:
     tests/mutants.sh {{NAMES}}
+
+# Fuzz all that is read, each kind of input for so many seconds: just fuzz 720 (needs cargo-fuzz)
+fuzz *ARGUMENTS:
+    tests/fuzz.sh {{ARGUMENTS}}

@@ -8,6 +8,7 @@ use smalti_core::light::table::NO_SURFACE;
 use smalti_core::scene::{Scene, World, compile};
 
 use crate::build::{globe, grey, material, mesh};
+use crate::leaving::{next, shaded, vector};
 use crate::oracle::Random;
 
 /// A closed mesh about the origin whose corners are jittered in distance, squeezed and put `away`.
@@ -45,6 +46,22 @@ pub fn leaks(scene: &Scene, accel: &Accel, centre: DVec3, shots: u32, random: &m
         leaks += u32::from(prim == MISS || !distance.is_finite());
     }
     leaks
+}
+
+/// Rays that start on the inside of the shell, at random places of it, and leave it unhindered.
+pub fn slips(scene: &Scene, accel: &Accel, centre: DVec3, shots: u32, random: &mut Random) -> u32 {
+    let mut tracer = Tracer::new(One, accel);
+    let mut slips = 0;
+    for _ in 0..shots.div_ceil(8) {
+        let from = scene.frame.point(centre) + random.cube() * 0.01 * scene.frame.scale;
+        let Some((hit, _)) = shaded(scene, accel, from, from + random.direction()) else { continue };
+        let side = if hit.outside { hit.normal } else { -hit.normal };
+        for _ in 0..8 {
+            let (_, prim) = next(&mut tracer, &hit, side, random.cosine_about(vector(side)));
+            slips += u32::from(prim == MISS);
+        }
+    }
+    slips
 }
 
 /// Round, flat, a needle.

@@ -117,7 +117,7 @@ fn tetrahedron(world: &mut World, corners: [DVec3; 4]) {
 }
 
 /// Where a packet of one ray hits, as shading sees it, or nothing.
-fn shaded(scene: &Scene, accel: &Accel, from: DVec3, goal: DVec3) -> Option<(surface::Hit<One>, u32)> {
+pub fn shaded(scene: &Scene, accel: &Accel, from: DVec3, goal: DVec3) -> Option<(surface::Hit<One>, u32)> {
     let mut rays = Stream::new(1, Columns::default());
     let direction = (goal - from).normalize().as_vec3().to_array();
     rays.set_v3(One, ORIGIN, 0, V3::splat(One, from.as_vec3().to_array()));
@@ -131,13 +131,14 @@ fn shaded(scene: &Scene, accel: &Accel, from: DVec3, goal: DVec3) -> Option<(sur
 }
 
 /// What a ray from a hit, along `direction` to the side of `side`, hits next.
-fn next(tracer: &mut Tracer<'_, One>, hit: &surface::Hit<One>, side: V3<One>, direction: DVec3) -> (f32, u32) {
+pub fn next(tracer: &mut Tracer<'_, One>, hit: &surface::Hit<One>, side: V3<One>, direction: DVec3) -> (f32, u32) {
     let direction = V3::splat(One, direction.as_vec3().to_array());
     let ray = Ray::new(One, hit.leave(One, side), direction, hit.surface);
     tracer.nearest(One, &ray, true)
 }
 
-fn vector(v: V3<One>) -> DVec3 {
+/// In f64.
+pub fn vector(v: V3<One>) -> DVec3 {
     DVec3::new(v.x.into(), v.y.into(), v.z.into())
 }
 

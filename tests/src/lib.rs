@@ -4,6 +4,7 @@ pub mod accuracy;
 pub mod arguments;
 pub mod build;
 pub mod closed;
+pub mod documents;
 pub mod draw;
 pub mod estimate;
 pub mod fuzz;

@@ -4,7 +4,8 @@
 //! ```text
 //! rays [--millions 1000] [--seed 1]
 //! ```
-//! Exit code 1 where one did.
+//! Exit code 1 where one did. What starts within its own rounding of an edge can slip out there, a ray in a million or so:
+//! that is counted too, and is no failure.
 
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -13,9 +14,10 @@ use anyhow::Result;
 use glam::DVec3;
 use rayon::prelude::*;
 use smalti_core::accel::{Accel, List};
+use smalti_core::scene::Scene;
 use smalti_tests::arguments::numbers;
 use smalti_tests::build::at;
-use smalti_tests::closed::{SQUEEZES, leaks, shell};
+use smalti_tests::closed::{SQUEEZES, leaks, shell, slips};
 use smalti_tests::leaving::{Left, from_sphere, from_tetrahedron};
 use smalti_tests::oracle::Random;
 
@@ -24,8 +26,10 @@ const CHUNK: u64 = 1_000_000;
 
 fn main() -> Result<ExitCode> {
     let [millions, seed] = numbers([("--millions", 1000), ("--seed", 1)])?;
-    let leaked = aimed(millions, seed);
+    let leaked = shells(millions, seed, leaks);
     println!("aimed at edges and corners of closed meshes: {millions} million rays, {leaked} of them found a way out");
+    let slipped = shells(millions, seed, slips);
+    println!("left the inside of closed meshes anywhere: {millions} million rays, {slipped} of them found a way out");
     let (left, wrong) = leaving(millions, seed);
     let of = |rays: u64| rays / CHUNK;
     println!(
@@ -38,8 +42,11 @@ fn main() -> Result<ExitCode> {
     Ok(if leaked == 0 && wrong.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
+/// A question to a closed mesh about a place, with so many rays: how many find a way out.
+type Ask = fn(&Scene, &Accel, DVec3, u32, &mut Random) -> u32;
+
 /// Rays out of closed meshes, small ones in a list and large ones in a tree, of any shape and anywhere.
-fn aimed(millions: u64, seed: u64) -> u64 {
+fn shells(millions: u64, seed: u64, ask: Ask) -> u64 {
     let chunk = |number: u64| {
         let mut random = Random::new(seed << 32 | number);
         let squeeze = SQUEEZES[number as usize % SQUEEZES.len()];
@@ -50,7 +57,7 @@ fn aimed(millions: u64, seed: u64) -> u64 {
             Some(list) if number.is_multiple_of(3) => Accel { list, tree: None },
             _ => Accel::tree_only(&scene, &prims.collect::<Vec<u32>>()),
         };
-        u64::from(leaks(&scene, &accel, away, CHUNK as u32, &mut random))
+        u64::from(ask(&scene, &accel, away, CHUNK as u32, &mut random))
     };
     (0..millions).into_par_iter().map(chunk).sum()
 }
