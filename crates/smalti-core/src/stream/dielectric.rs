@@ -60,7 +60,6 @@ pub fn fork<L: Lanes>(
             let less = l.select(l.lt(shares[0], shares[1]), shares[0], shares[1]);
             let both = l.le(l.f(FORK), throughput.max_component(l) * less) & hits.comes_from_camera(l, at);
             let share = l.select(both, shares[usize::from(!reflect)], l.f(1.0));
-            let share = if mutant!("fork_without_shares") { l.f(1.0) } else { share };
             let goes = both | if reflect { reflects } else { !reflects };
             let rays = crossing.rays(l, l.m(reflect), hits, at, throughput.scale(share));
             next.scatter(l, hits, at, hits.active(l, at) & goes, &rays);
