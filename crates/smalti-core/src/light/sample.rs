@@ -111,10 +111,10 @@ fn patch<L: Lanes>(l: L, place: &[L::F; 16], surface: L::U, x: V3<L>, (u, v): (L
     }
     let front = l.lt(l.f(0.0), facing);
     let zero = V3::splat(l, [0.0; 3]);
-    // cosθ / pdf = (n·reach / d) · (facing / d) · area / d²: four times d, two of them to make the cosines.
     if mutant!("no_cosine_at_the_light") {
         facing = l.sqrt(squared);
     }
+    // cosθ / pdf = (n·reach / d) · (facing / d) · area / d²: four times d, two of them to make the cosines.
     // Report eq. 13 read without the square of the distance.
     let fourth = if mutant!("eq13_distance_not_squared") { squared * l.sqrt(squared) } else { squared * squared };
     Incident {
@@ -187,8 +187,8 @@ pub fn pdf_of_hit<L: Lanes>(
 ) -> L::F {
     let [x, y, z, w] = *geometry;
     let place = V3::new(x, y, z);
-    let by_angle = t * t / l.abs(place.dot(l, wi));
-    let planar = emitter[3] * if mutant!("pdf_by_area_taken_for_one_by_angle") { l.f(1.0) } else { by_angle };
+    let by_angle = emitter[3] * t * t / l.abs(place.dot(l, wi));
+    let planar = if mutant!("pdf_by_area_taken_for_one_by_angle") { emitter[3] } else { by_angle };
     let axis = place - from;
     let round = warp::cone_pdf(l, warp::sphere_opening(l, w * w, axis.dot(l, axis))) * emitter[3];
     l.select(is_sphere, round, planar)

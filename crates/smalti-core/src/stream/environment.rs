@@ -10,8 +10,10 @@ pub fn run<L: Lanes>(l: L, radiance: [f32; 3], escaped: &Stream, slots: &mut Slo
     let radiance = V3::splat(l, radiance);
     for at in (0..escaped.len()).step_by(L::WIDTH) {
         let arrives = escaped.v3(l, THROUGHPUT, at) * radiance.scale(escaped.eta(l, at));
-        let active = escaped.active(l, at);
-        let counts = if mutant!("environment_hit_pruned") { escaped.comes_from_camera(l, at) } else { active };
-        slots.add(l, active & counts, escaped.u(l, SLOT, at), arrives);
+        let mut counts = escaped.active(l, at);
+        if mutant!("environment_hit_pruned") {
+            counts = counts & escaped.comes_from_camera(l, at);
+        }
+        slots.add(l, counts, escaped.u(l, SLOT, at), arrives);
     }
 }
