@@ -5,6 +5,7 @@
 //! at the same distance go to the lower number.
 
 mod compile;
+pub mod details;
 pub mod frame;
 pub mod media;
 pub mod world;
