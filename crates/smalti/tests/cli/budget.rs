@@ -128,9 +128,13 @@ fn what_nobody_can_judge_is_said() {
 
 #[test]
 fn budgets_that_make_no_sense() {
-    for time in ["0", "-1", "abc", "10m"] {
-        refuses(&format!("render room.toml --time {time}"), &["--time", "greater than 0, for example 0.5 or 10s"]);
+    for time in ["0", "-1", "abc", "10x"] {
+        refuses(&format!("render room.toml --time {time}"), &["--time", "greater than 0, for example 500ms, 10s"]);
     }
+    refuses("render room.toml --time 5min", &["--time", "did you mean '5m'?"]);
+    refuses("render room.toml --time 1e20", &["--time", "at most 1e9 seconds"]);
+    refuses("study equal-time room.toml --seconds 1m30", &["--seconds", "did you mean '1m30s'?"]);
+    refuses("study equal-error room.toml --seconds 2hours", &["--seconds", "did you mean '2h'?"]);
     for error in ["0", "-1", "0%", "much"] {
         let parts = ["--target-error", "greater than 0, for example 3% or 0.03"];
         refuses(&format!("render room.toml --target-error {error}"), &parts);
