@@ -9,7 +9,7 @@ use smalti_core::render::Renderer;
 use smalti_scheduler::{Goal, Outcome, Shelf, Watch, render_to};
 
 use crate::args::{ProgressArg, RenderArgs, When};
-use crate::budget::{self, Budget};
+use crate::budget::{self, Budget, Came, Spent};
 use crate::describe::describe;
 use crate::exit::{Failure, Status};
 use crate::frontend::{self, Mode, Title};
@@ -46,6 +46,12 @@ pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Fa
         Workers { pool: &pool, interrupt: &interrupt, photon_map: photon_map.as_ref(), downsample: job.downsample };
     let title = Title { goal: budget.shown(&job.settings), ..title(&job, work, args.exposure) };
     let mut outcome = perform(&goal, (&renderer, film), &workers, mode, title)?;
+    let spent = Spent {
+        setup: work.setup,
+        photons: outcome.photons.elapsed,
+        total: start.elapsed(),
+        samples: outcome.mean_samples,
+    };
     if budget.is_open() {
         job.settings.spp = outcome.mean_samples;
     }
@@ -60,12 +66,12 @@ pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Fa
     if developed.samples.1 > 0 {
         let mut summary = summary(&job, work, &outcome, &developed);
         summary.quality = quality;
-        let shortfall = judge(&budget, &outcome, &developed, &mut summary);
+        judge((&budget, spent), &outcome, &developed, &mut summary);
         let written = write(&outputs, &developed, &mut summary, job.exposure(args.exposure));
         let written = written.and(errors.map_or(Ok(()), |errors| write_errors(errors, &mut summary, messages)));
         summary.run.wall_seconds = start.elapsed().as_secs_f64();
         tell(args, &summary, messages)?;
-        shortfall.iter().for_each(|text| messages.warning(text));
+        summary.shortfalls.iter().for_each(|text| messages.warning(text));
         written.and(kept)?;
     }
     Ok(status(args.strict, &outcome, &interrupt))
@@ -77,12 +83,12 @@ fn tell_unless_quiet(mode: Mode, messages: Messages, text: &str) {
     }
 }
 
-/// Notes whether what was wanted was reached; returns what there is to say if it was not.
-fn judge(budget: &Budget, outcome: &Outcome, developed: &Developed, summary: &mut Summary) -> Option<String> {
+/// Notes whether what was wanted was reached, and what there is to say if it was not.
+fn judge((budget, spent): (&Budget, Spent), outcome: &Outcome, developed: &Developed, summary: &mut Summary) {
     let error = developed.error.as_ref();
     let at_most = budget::at_most(error, developed.bias.as_ref());
-    summary.target_reached = budget.is_reached(outcome.stopped, at_most);
-    budget.shortfall(outcome.stopped, error, at_most)
+    let verdict = budget.judge(&Came { stopped: outcome.stopped, spent, error, at_most });
+    (summary.target_reached, summary.shortfalls) = (verdict.reached, verdict.shortfalls);
 }
 
 /// What a display says of a job, of which it shows the picture so far.
