@@ -10,6 +10,7 @@ use toml::de::DeTable;
 use crate::document::{Key, Section, key};
 use crate::error::Result;
 use crate::material::Palette;
+use crate::mesh::Watch;
 use crate::render_table::RenderTable;
 use crate::{camera, light, mesh, surface};
 
@@ -31,8 +32,12 @@ pub fn root<'d>(document: &'d Spanned<DeTable<'d>>) -> Result<Section<'d>> {
     Section::of_entries(document.get_ref(), "the scene file".to_owned(), document.span(), KINDS)
 }
 
-/// The world and the settings that `document` describes, and notes; mesh files are relative to `folder`.
-pub fn read<'d>(document: &'d Spanned<DeTable<'d>>, folder: &Path) -> Result<(World, RenderTable, Vec<String>)> {
+/// The world and the settings that `document` describes, and notes; mesh files are relative to the folder, and whoever
+/// watches hears of them.
+pub fn read<'d>(
+    document: &'d Spanned<DeTable<'d>>,
+    meshes: (&Path, &Watch),
+) -> Result<(World, RenderTable, Vec<String>)> {
     let root = root(document)?;
     let mut notes = Vec::new();
     let cameras = camera::read(&root)?;
@@ -41,7 +46,7 @@ pub fn read<'d>(document: &'d Spanned<DeTable<'d>>, folder: &Path) -> Result<(Wo
     let mut world = World {
         polygons: surface::polygons(&root, &palette)?,
         spheres: surface::spheres(&root, &palette)?,
-        meshes: mesh::read_all(&root, &palette, folder, &mut notes)?,
+        meshes: mesh::read_all(&root, &palette, meshes, &mut notes)?,
         cameras,
         ..World::default()
     };
