@@ -1,10 +1,10 @@
 //! Is the light that is there in the picture, and is what renders state of their error true, in rooms of unlike scales?
 //!
 //! ```text
-//! rooms [--seeds 40] [--first 0] [--rooms 30] [--truth-spp 1024] [--path-spp 4096]
+//! rooms [--seeds 40] [--first 0] [--rooms 30] [--spp 64] [--photons N] [--truth-spp 1024] [--path-spp 4096]
 //! ```
-//! Renders each random room (see `smalti_tests::rooms`) with `auto` at 64 × 64 pixels, 64 samples and default settings,
-//! many times, each time with another seed. The truth is a render by `auto` with many more samples and photons; its mean
+//! Renders each random room (see `smalti_tests::rooms`) with `auto` at 64 × 64 pixels, 64 samples and default settings
+//! (or others), many times, each time with another seed. The truth is a render by `auto` with many more samples and photons; its mean
 //! stands beside that of a render by `path`. Prints a line of CSV for each room.
 
 use anyhow::{Context, Result, bail};
@@ -23,6 +23,8 @@ struct Arguments {
     seeds: u64,
     first: u64,
     rooms: u64,
+    spp: u32,
+    photons: Option<u32>,
     truth_spp: u32,
     path_spp: u32,
 }
@@ -41,7 +43,8 @@ fn main() -> Result<()> {
 }
 
 fn read() -> Result<Arguments> {
-    let mut read = Arguments { seeds: 40, first: 0, rooms: rooms::ROOMS, truth_spp: 1024, path_spp: 4096 };
+    let mut read =
+        Arguments { seeds: 40, first: 0, rooms: rooms::ROOMS, spp: 64, photons: None, truth_spp: 1024, path_spp: 4096 };
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         let value = words.next().with_context(|| format!("{word} needs a value"))?;
@@ -49,6 +52,8 @@ fn read() -> Result<Arguments> {
             "--seeds" => read.seeds = value.parse()?,
             "--first" => read.first = value.parse()?,
             "--rooms" => read.rooms = value.parse()?,
+            "--spp" => read.spp = value.parse()?,
+            "--photons" => read.photons = Some(value.parse()?),
             "--truth-spp" => read.truth_spp = value.parse()?,
             "--path-spp" => read.path_spp = value.parse()?,
             _ => bail!("unknown flag {word}"),
@@ -88,7 +93,7 @@ fn study(number: u64, arguments: &Arguments) -> Result<String> {
     let is_caustic = |pixel: &f64| *pixel > CAUSTIC * brightness;
     let mut room = Room::default();
     for seed in 0..arguments.seeds {
-        let image = rendered(&world, auto(seed, 64))?;
+        let image = rendered(&world, Settings { photons: arguments.photons, ..auto(seed, arguments.spp) })?;
         let error = relative_error(&image.pixels, &truth.pixels, brightness);
         // The truth has noise of its own.
         let own = truth.error.relative_error;
