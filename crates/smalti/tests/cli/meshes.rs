@@ -75,7 +75,7 @@ fn a_file_that_is_no_mesh_is_answered_with_what_it_is() {
     for (bytes, parts) in [
         (&b"<!DOCTYPE html><html></html>"[..], ["a page in HTML", "fetch the file itself"]),
         (b"version https://git-lfs.github.com/spec/v1\noid sha256:0\n", ["git-lfs", "git lfs pull"]),
-        (b"\xff\xfev\0 \00\0", ["UTF-16", "UTF-8"]),
+        (b"\xff\xfev\0 \x000\0", ["UTF-16", "UTF-8"]),
         (b"", ["is empty", "again"]),
     ] {
         fs::write(folder.path().join("view.toml"), format!("{VIEW}file = 'mesh.obj'\n")).unwrap();

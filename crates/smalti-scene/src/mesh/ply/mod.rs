@@ -7,17 +7,16 @@
 
 mod body;
 mod header;
+mod role;
 
 use glam::DVec3;
 
 use super::soup::{Flaw, Soup};
-use super::tally::{Content, Tally};
+use super::tally::Content;
 use super::text::without_mark;
 use body::Body;
-use header::{Element, Kind, Property};
-
-/// Names under which programs store the corners of a face.
-const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
+use header::{Element, Kind};
+use role::{Part, Role, is_corners, roles, unused};
 
 /// Reads a PLY file: the elements `vertex` (`x`, `y`, `z`), `face` and `tristrips` (`vertex_indices`). All others are
 /// counted, and are not used.
@@ -50,49 +49,6 @@ pub fn read(bytes: &[u8]) -> Result<Soup, Flaw> {
         return Err(Flaw::new("none of its faces has three different corners"));
     }
     Ok(soup)
-}
-
-/// What an element is for.
-#[derive(Debug, PartialEq)]
-enum Role {
-    Vertices,
-    Corners(Part),
-    Unused,
-}
-
-/// How lists of corners become triangles.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Part {
-    Faces,
-    Strips,
-}
-
-/// The role of each element; what is missing otherwise.
-fn roles(elements: &[Element]) -> Result<Vec<Role>, Flaw> {
-    let roles: Vec<Role> = elements.iter().map(role).collect();
-    if !roles.contains(&Role::Vertices) {
-        return Err(Flaw::new("there is no element `vertex` with numbers x, y and z"));
-    }
-    let has_corners = |(element, role): (&Element, &Role)| element.count > 0 && matches!(role, Role::Corners(_));
-    if !elements.iter().zip(&roles).any(has_corners) {
-        return Err(Flaw::new("there is no face in it (element `face` or `tristrips` with `vertex_indices`)"));
-    }
-    Ok(roles)
-}
-
-fn role(element: &Element) -> Role {
-    let is_number = |name: &str| element.properties.iter().any(|p| p.name == name && matches!(p.kind, Kind::One(_)));
-    let has_corners = element.properties.iter().any(is_corners);
-    match element.name.as_str() {
-        "vertex" if ["x", "y", "z"].into_iter().all(is_number) => Role::Vertices,
-        "face" if has_corners => Role::Corners(Part::Faces),
-        "tristrips" if has_corners => Role::Corners(Part::Strips),
-        _ => Role::Unused,
-    }
-}
-
-fn is_corners(property: &Property) -> bool {
-    CORNERS.contains(&property.name.as_str()) && matches!(property.kind, Kind::List { .. })
 }
 
 fn skip(element: &Element, body: &mut Body) -> Result<(), Flaw> {
@@ -184,29 +140,6 @@ fn add_strips(soup: &mut Soup, corners: &[i64]) -> Result<(), String> {
         }
     }
     Ok(())
-}
-
-/// Counts what an element holds and is not used: each kind of it once for each item.
-fn unused(element: &Element, role: &Role, tally: &mut Tally) {
-    let mut found: Vec<Content> = match role {
-        Role::Vertices => {
-            element.properties.iter().filter(|p| !["x", "y", "z"].contains(&p.name.as_str())).map(content).collect()
-        }
-        Role::Corners(_) => element.properties.iter().filter(|p| !is_corners(p)).map(content).collect(),
-        Role::Unused => vec![Content::Element(element.name.clone())],
-    };
-    found.sort();
-    found.dedup();
-    found.into_iter().for_each(|content| tally.add(content, element.count));
-}
-
-fn content(property: &Property) -> Content {
-    match property.name.as_str() {
-        "nx" | "ny" | "nz" => Content::Normals,
-        "red" | "green" | "blue" | "alpha" | "diffuse_red" | "diffuse_green" | "diffuse_blue" => Content::Colours,
-        "s" | "t" | "u" | "v" | "texture_u" | "texture_v" | "texcoord" | "texnumber" => Content::TextureCoordinates,
-        name => Content::Property(name.to_owned()),
-    }
 }
 
 #[cfg(test)]

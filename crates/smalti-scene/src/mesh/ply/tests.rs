@@ -1,3 +1,4 @@
+use super::role::CORNERS;
 use super::*;
 
 const ASCII: &str = "ply\nformat ascii 1.0\ncomment by hand\nelement vertex 4\nproperty uchar red\nproperty float x\n\
@@ -99,6 +100,46 @@ fn indices_may_be_of_any_type() {
     assert_eq!(broken, Flaw::at(14, "`1.5` is not the number of a vertex"));
     assert!(read(&square(floats, "3 0 nan 2\n")).unwrap_err().message.contains("`NaN` is not the number of a vertex"));
     assert_eq!(read(&square(floats, "-3 0 1 2\n")).unwrap_err().message, "a list has the length -3");
+}
+
+/// The dart 0 1 2 3 as a list of some type, of whose bytes each is put by `put`, the lowest first.
+fn dart<const N: usize>(kind: &str, big: bool, put: impl Fn(u8) -> [u8; N]) -> Vec<u8> {
+    let order = if big { "big" } else { "little" };
+    let element = format!("element face 1\nproperty list {kind} {kind} vertex_index");
+    let text = square(&element, "");
+    let header = text.windows(11).position(|part| part == b"end_header\n").unwrap() + 11;
+    let mut out =
+        String::from_utf8_lossy(&text[..header]).replace("ascii", &format!("binary_{order}_endian")).into_bytes();
+    let mut number = |mut little: Vec<u8>| {
+        if big {
+            little.reverse();
+        }
+        out.extend(little);
+    };
+    for coordinate in [0.0f32, 0.0, 0.0, 2.0, 1.0, 0.0, 0.0, 2.0, 0.0, 0.5, 1.0, 0.0] {
+        number(coordinate.to_le_bytes().to_vec());
+    }
+    [4, 0, 1, 2, 3].into_iter().for_each(|index| number(put(index).to_vec()));
+    out
+}
+
+#[test]
+fn binary_indices_may_be_of_any_type() {
+    for big in [false, true] {
+        for bytes in [
+            dart("char", big, |index| (index as i8).to_le_bytes()),
+            dart("uint8", big, |index| [index]),
+            dart("short", big, |index| i16::from(index).to_le_bytes()),
+            dart("uint16", big, |index| u16::from(index).to_le_bytes()),
+            dart("int32", big, |index| i32::from(index).to_le_bytes()),
+            dart("uint", big, |index| u32::from(index).to_le_bytes()),
+            dart("float", big, |index| f32::from(index).to_le_bytes()),
+            dart("float64", big, |index| f64::from(index).to_le_bytes()),
+        ] {
+            assert_eq!(mesh(&bytes).1.len(), 2);
+            assert!(mesh(&bytes).1.iter().all(|face| face.contains(&3) && face.contains(&1)), "cut at its dent");
+        }
+    }
 }
 
 #[test]
