@@ -11,6 +11,7 @@ use crate::document::{Key, Section, key};
 use crate::error::Result;
 use crate::material::Palette;
 use crate::mesh::Watch;
+use crate::note::Note;
 use crate::render_table::RenderTable;
 use crate::{camera, light, mesh, surface};
 
@@ -37,7 +38,7 @@ pub fn root<'d>(document: &'d Spanned<DeTable<'d>>) -> Result<Section<'d>> {
 pub fn read<'d>(
     document: &'d Spanned<DeTable<'d>>,
     meshes: (&Path, &Watch),
-) -> Result<(World, RenderTable, Vec<String>)> {
+) -> Result<(World, RenderTable, Vec<Note>)> {
     let root = root(document)?;
     let mut notes = Vec::new();
     let cameras = camera::read(&root)?;
@@ -55,13 +56,13 @@ pub fn read<'d>(
     world.materials = palette.materials;
     remove_clear(&mut world, &names, &mut notes);
     if !has_light(&world) {
-        notes.push("nothing in the scene emits light: the image will be black".to_owned());
+        notes.push(Note::warning("nothing in the scene emits light: the image will be black"));
     }
     Ok((world, settings, notes))
 }
 
 /// Removes surfaces that cannot be seen: a dielectric with an index of exactly 1 that neither absorbs nor emits.
-fn remove_clear(world: &mut World, names: &[&str], notes: &mut Vec<String>) {
+fn remove_clear(world: &mut World, names: &[&str], notes: &mut Vec<Note>) {
     let World { materials, polygons, spheres, meshes, .. } = world;
     let mut removed = vec![0usize; materials.len()];
     let mut keep = |material: usize, radiance: Option<Rgb>| {
@@ -74,7 +75,8 @@ fn remove_clear(world: &mut World, names: &[&str], notes: &mut Vec<String>) {
     meshes.retain(|mesh| keep(mesh.material, mesh.radiance));
     for (name, count) in names.iter().zip(removed).filter(|(_, count)| *count > 0) {
         let what = if count == 1 { "1 surface is".to_owned() } else { format!("{count} surfaces are") };
-        notes.push(format!("material `{name}` has an index of exactly 1 and cannot be seen: {what} removed"));
+        let why = "has an index of exactly 1 and cannot be seen";
+        notes.push(Note::new(format!("material `{name}` {why}: {what} removed")));
     }
 }
 

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use smalti_core::scene::World;
-use smalti_scene::{Loaded, load};
+use smalti_scene::{Loaded, Note, load};
 
 const CAMERA: &str = "[camera]\neye = [0, -5, 1]\nlook_at = [0, 0, 1]\nup = [0, 0, 1]\nfov = 60\n\
                       [material.white]\nlambert = { albedo = 0.5 }\n[environment]\nradiance = 1\n";
@@ -33,7 +33,7 @@ fn clear_surfaces_are_removed_unless_they_emit() {
     let loaded = alone(&air("1"));
     assert_eq!(counts(&loaded.world), [0, 1, 0]);
     let note = "material `air` has an index of exactly 1 and cannot be seen: 2 surfaces are removed";
-    assert_eq!(loaded.notes, [note]);
+    assert_eq!(loaded.notes, [Note::new(note)]);
     assert_eq!(counts(&alone(&air("1.0000001")).world), [1, 2, 0]);
 }
 
@@ -42,7 +42,7 @@ fn triangles_without_area_are_dropped_and_noted() {
     let mesh = "[[mesh]]\nmaterial = 'white'\nvertices = [[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0]]\n\
                 faces = [[0, 1, 2], [0, 1, 3]]\n";
     let loaded = alone(mesh);
-    assert_eq!(loaded.notes, ["mesh 1: 1 of 2 triangles have no area and are dropped"]);
+    assert_eq!(loaded.notes, [Note::new("mesh 1: 1 of 2 triangles have no area and are dropped")]);
     assert_eq!(loaded.world.meshes[0].faces, [[0, 1, 3]]);
 }
 
@@ -53,7 +53,7 @@ fn a_dark_scene_is_noted() {
     let dark = "[[light.point]]\nposition = [0, 0, 3]\nintensity = 0\n";
     fs::write(&path, CAMERA.replace("radiance = 1", "radiance = [0, 0, 0]") + dark).unwrap();
     let loaded = load(&path).unwrap();
-    assert_eq!(loaded.notes, ["nothing in the scene emits light: the image will be black"]);
+    assert_eq!(loaded.notes, [Note::warning("nothing in the scene emits light: the image will be black")]);
     assert_eq!((loaded.world.environment, loaded.world.point_lights.len()), (None, 0));
 }
 

@@ -7,7 +7,7 @@ use rayon::ThreadPool;
 use smalti_core::render::{Level, Renderer};
 use smalti_core::scene::World;
 use smalti_core::settings::{Rect, Settings};
-use smalti_scene::{Loaded, Reading};
+use smalti_scene::{Loaded, Note, Reading};
 
 use crate::args::ImageArgs;
 use crate::exit::Failure;
@@ -30,8 +30,8 @@ pub struct Job {
     pub downsample: u32,
     /// Hash of what the scene file and its meshes say.
     pub scene_hash: String,
-    /// What the reader found worth telling.
-    pub notes: Vec<String>,
+    /// What is worth knowing and stops nothing: the reader's notes first, then those of later stages.
+    pub notes: Vec<Note>,
     /// The SIMD level to use.
     pub level: Level,
     /// What the scene suggests where no flag says otherwise: the side of a tile.

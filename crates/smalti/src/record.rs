@@ -19,6 +19,8 @@ pub struct Subject<'a> {
     pub estimator: u32,
     pub scene: String,
     pub scene_hash: &'a str,
+    /// What is worth knowing and stops nothing, each a sentence.
+    pub notes: Vec<String>,
     #[serde(flatten)]
     pub settings: SettingsRecord,
 }
@@ -30,8 +32,14 @@ pub fn subject(job: &Job) -> Subject<'_> {
         estimator: smalti_core::ESTIMATOR,
         scene: job.path.display().to_string(),
         scene_hash: &job.scene_hash,
+        notes: notes(job),
         settings: settings(job),
     }
+}
+
+/// The notes of a job as JSON has them.
+pub fn notes(job: &Job) -> Vec<String> {
+    job.notes.iter().map(|note| note.text.clone()).collect()
 }
 
 /// Settings as users write them.

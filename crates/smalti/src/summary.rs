@@ -24,6 +24,8 @@ pub struct Summary {
     pub estimator: u32,
     pub scene: String,
     pub scene_hash: String,
+    /// What is worth knowing about scene and settings and stops nothing, each a sentence.
+    pub notes: Vec<String>,
     #[serde(flatten)]
     pub settings: SettingsRecord,
     /// Fewest and most samples of any pixel; they differ after an interruption and where samples went to the noise.
@@ -140,6 +142,7 @@ pub fn summary(job: &Job, work: Work, outcome: &Outcome, developed: &Developed) 
         estimator: smalti_core::ESTIMATOR,
         scene: job.path.display().to_string(),
         scene_hash: job.scene_hash.clone(),
+        notes: record::notes(job),
         settings: record::settings(job),
         samples_least: least,
         samples_most: most,

@@ -18,7 +18,7 @@ use crate::args::{DoctorArgs, ImageArgs};
 use crate::exit::{Failure, Status};
 use crate::frontend::{self, Mode};
 use crate::job::Job;
-use crate::print;
+use crate::print::{self, Messages};
 use crate::record::{self, Subject};
 
 /// The longer side of the pictures, where `--size` does not say otherwise.
@@ -65,6 +65,7 @@ struct Found {
 /// Runs the command.
 pub fn run(args: &DoctorArgs) -> Result<Status, Failure> {
     let job = frontend::set_up(Mode::of_terminal(), |told| Job::load(&args.scene, &args.image, args.simd.simd, told))?;
+    Messages { json: false }.notes(&job.notes, args.quiet);
     if args.hunt { hunt(args, &job) } else { examination(args, job) }
 }
 

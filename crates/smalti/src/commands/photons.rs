@@ -27,7 +27,7 @@ pub fn run(args: &PhotonsArgs, colour: When, start: Instant) -> Result<Status, F
     let interrupt = interrupt::listen(Farewell { restore: frontend::restore, messages }).map_err(Failure::bug)?;
     let outputs = outputs::checked(&args.outputs, &args.scene, "-photons.png")?;
     let request = frontend::set_up(mode, |told| Request::load(args, told))?;
-    request.job.notes.iter().for_each(|note| messages.note(note));
+    messages.notes(&request.job.notes, args.run.quiet);
     let pool = smalti_scheduler::pool(args.run.threads as usize).map_err(Failure::user)?;
     let renderer = frontend::set_up(mode, |told| pool.install(|| request.renderer(told)))?;
     let tile = request.job.tile(args.run.work.tile);

@@ -12,7 +12,7 @@ use crate::args::{ScalingArgs, Threads};
 use crate::exit::{Failure, Status};
 use crate::frontend::{self, Mode};
 use crate::job::Job;
-use crate::print;
+use crate::print::{self, Messages};
 use crate::record::{self, Subject};
 use crate::table::{Align, table};
 
@@ -71,6 +71,7 @@ struct Run {
 pub fn run(args: &ScalingArgs) -> Result<Status, Failure> {
     let mode = Mode::of_terminal();
     let job = frontend::set_up(mode, |told| Job::load(&args.scene, &args.image, args.work.simd.simd, told))?;
+    Messages { json: false }.notes(&job.notes, args.quiet);
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let counts = thread_counts(args.threads.as_ref(), cores);
     let most = counts.iter().copied().max().unwrap_or(1);

@@ -3,7 +3,9 @@
 mod budget;
 mod doctor;
 mod images;
+mod meshes;
 mod mistakes;
+mod notes;
 mod photon_map;
 mod photons;
 mod quality;
