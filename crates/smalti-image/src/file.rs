@@ -177,7 +177,7 @@ fn decode(format: Format, bytes: &[u8]) -> Result<Picture, Broken> {
     }
 }
 
-/// What is wrong with the content of a file, or with an image that a file cannot hold; in our words, not a library's.
+/// A flaw in the content of a file, or an image that a file cannot hold; in our words, not a library's.
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
 pub(crate) struct Broken(String);

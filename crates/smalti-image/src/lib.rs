@@ -20,7 +20,7 @@ mod tone;
 mod window;
 
 pub use align::{AlignError, Aligned, Sizes, align};
-pub use destination::{DestinationError, check_destination, check_place, replace};
+pub use destination::{DestinationError, check_destination, check_place, replace, temporary_of};
 pub use difference::{Difference, difference, difference_scale};
 pub use file::{ReadError, WriteError, encode_png, read, read_picture, write, write_part};
 pub use format::{Format, FormatError};
