@@ -4,6 +4,7 @@
 //! bytes. Files are written atomically: at every moment the destination is absent, the old file or the new one.
 
 mod align;
+mod codec;
 mod content;
 mod destination;
 mod difference;
