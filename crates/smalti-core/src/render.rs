@@ -4,7 +4,7 @@ use std::ops::{ControlFlow, Range};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::film::{Counts, ROUND, Shift, Tile};
+use crate::film::{Counts, Crosscheck, ROUND, Shift, Tile};
 pub use crate::lanes::Level;
 use crate::lanes::dispatch;
 use crate::mutant::mutant;
@@ -280,7 +280,7 @@ impl Renderer {
         }
         assert!(first <= MOST_SLOTS);
         let shifts = self.plan.has(|stage| matches!(stage, Stage::Caustic | Stage::Gather));
-        slots.reset(first, shifts);
+        slots.reset(first, shifts, self.plan.finds_twice());
     }
 
     /// Runs one stage over its stream: the one place where stages are told apart.
@@ -439,6 +439,11 @@ fn deposit_sample(
             work.rejected.push(rejected(tile, pixel, sample));
         }
         tile.pixels[pixel].add(counts.batch(), weight, if finite { *radiance } else { [0.0; 3] });
+    }
+    if let Some(twice) = workspace.slots.twice().get(of_sample.clone()) {
+        tile.crosschecks.resize(tile.pixels.len(), Crosscheck::default());
+        let checks = indices.clone().zip(twice);
+        checks.for_each(|(pixel, twice)| tile.crosschecks[pixel].add(counts.half(), weight, *twice));
     }
     let Some(shifts) = workspace.slots.shift().get(of_sample) else { return };
     tile.shifts.resize(tile.pixels.len(), Shift::default());

@@ -1,5 +1,5 @@
 //! A scene at its numerical extremes: in other units, in other places, turned, at every SIMD level; ray by ray against f64;
-//! and what of its geometry asks for trouble.
+//! the light of its photons beside the same light by paths; and what of its geometry asks for trouble.
 //!
 //! [`examine`] runs every check and tells each finding as soon as it is there. Nothing here is about one scene: what the
 //! checks ask for are the renderer's promises (docs/stability.md).
@@ -7,6 +7,7 @@
 mod double;
 mod finding;
 mod geometry;
+mod photons;
 mod pictures;
 mod rays;
 mod turned;
@@ -47,5 +48,6 @@ pub struct Patient<'a> {
 pub fn examine(patient: Patient<'_>, pool: &ThreadPool, mut tell: impl FnMut(Finding)) -> Result<(), DoctorError> {
     geometry::check(&patient, &mut tell);
     pictures::check(&patient, pool, &mut tell)?;
+    photons::check(&patient, pool, &mut tell)?;
     rays::check(&patient, pool, &mut tell)
 }

@@ -25,13 +25,13 @@ const DECADES: [i32; 4] = [-6, -3, 3, 6];
 const AWAY: [i32; 5] = [3, 4, 5, 6, 7];
 
 /// Seeds of the pictures that are compared by their noise.
-const SEEDS: u64 = 8;
+pub const SEEDS: u64 = 8;
 
 /// Two-sided 1e-6 of Student's t with 7 degrees of freedom: a mean that is off by more is not off by chance.
-const LIMIT: f64 = 14.2;
+pub const LIMIT: f64 = 14.2;
 
 /// What the mean of the picture may change by, whatever its noise: hits at edges are rounded otherwise.
-const ALLOWED: f64 = 1e-4;
+pub const ALLOWED: f64 = 1e-4;
 
 /// Side of the square tiles of a film.
 const TILE: u32 = 32;
@@ -73,13 +73,16 @@ pub fn check(patient: &Patient<'_>, pool: &ThreadPool, tell: &mut impl FnMut(Fin
 
 /// Where pictures are taken.
 #[derive(Clone, Copy)]
-struct Studio<'a> {
-    pool: &'a ThreadPool,
-    level: Level,
+pub struct Studio<'a> {
+    /// The workers.
+    pub pool: &'a ThreadPool,
+    /// Their SIMD level.
+    pub level: Level,
 }
 
 impl Studio<'_> {
-    fn render(&self, world: &World, settings: &Settings) -> Result<Outcome, DoctorError> {
+    /// A render and what came of its samples.
+    pub fn render(&self, world: &World, settings: &Settings) -> Result<Outcome, DoctorError> {
         let renderer = self.pool.install(|| Renderer::new(world, settings.clone(), self.level))?;
         let film = Film::new(settings.area(), TILE);
         let outcome = render(&renderer, film, self.pool, &Cancel::default(), None);
@@ -91,7 +94,7 @@ impl Studio<'_> {
     }
 
     /// The mean of the picture with each seed.
-    fn means(&self, world: &World, settings: &Settings) -> Result<Vec<f64>, DoctorError> {
+    pub fn means(&self, world: &World, settings: &Settings) -> Result<Vec<f64>, DoctorError> {
         let mean = |seed: u64| {
             let image = self.draw(world, &Settings { seed: settings.seed.wrapping_add(seed), ..settings.clone() })?;
             let sum: f64 = image.pixels.as_flattened().iter().map(|value| f64::from(*value)).sum();
@@ -154,7 +157,11 @@ fn coarseness(world: &World) -> f64 {
 }
 
 /// Whether the means of pictures with the same seeds differ by no more than noise, or by so little of the brightness.
-fn same_light(what: (&'static str, impl Into<String>), (expected, found): (&[f64], &[f64]), allowed: f64) -> Finding {
+pub fn same_light(
+    what: (&'static str, impl Into<String>),
+    (expected, found): (&[f64], &[f64]),
+    allowed: f64,
+) -> Finding {
     let count = expected.len() as f64;
     let differences: Vec<f64> = expected.iter().zip(found).map(|(a, b)| b - a).collect();
     let mean = differences.iter().sum::<f64>() / count;

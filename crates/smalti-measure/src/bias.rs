@@ -8,17 +8,14 @@
 use serde::Serialize;
 use smalti_core::film::{Film, Shifted};
 
+use crate::blocks::Blocks;
 use crate::compare::FLOOR;
-
-/// Side of the blocks of pixels that are taken as independent of each other; small images are cut in four by their width.
-const BLOCK: usize = 32;
+use crate::crosscheck::CrosscheckStatement;
+use crate::interval::Z;
 
 /// The upper end allows for this much more: of what is much smaller than a photon's disc, half of the disc has more than
 /// half of the bias. Chosen after two rooms whose bias the halves understated by up to a third; no study has set it yet.
 const UNRESOLVED: f64 = 1.5;
-
-/// The two-sided 95 % quantile of the normal distribution.
-const Z: f64 = 1.959_963_984_540_054;
 
 /// The bias by photon radii. The names of the fields are a promise: summaries carry them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -26,22 +23,27 @@ pub struct BiasStatement {
     /// Root of the mean over pixels and channels of b² / (x² + 0.01 m²), b the bias and m the mean of the image: what the
     /// radius adds to the relative error.
     pub relative_bias: f64,
-    /// Upper end of its 95 % interval.
+    /// Upper end of its 95 % interval, and of what photons lack of the light that paths find.
     pub relative_bias_high: f64,
     /// By what fraction the image as a whole is too bright (or, below 0, too dark).
     pub brightness: f64,
+    /// Light that photons bring against the same light by paths; `None` where paths find none of it.
+    pub crosscheck: Option<CrosscheckStatement>,
 }
 
 /// The bias of the image that `film` develops into. `None` where nothing is known.
 pub fn bias_statement(film: &Film) -> Option<BiasStatement> {
-    of_pixels(&film.shifts()?, film.area.width)
+    let halves = of_pixels(&film.shifts()?, film.area.width)?;
+    let crosscheck = film.crosschecks().and_then(|checks| CrosscheckStatement::of_pixels(&checks, film.area.width));
+    let lacking = crosscheck.map_or(0.0, |check| check.lacking_high);
+    Some(BiasStatement { relative_bias_high: halves.relative_bias_high.max(lacking), crosscheck, ..halves })
 }
 
 /// The same by the shifts of the pixels, in rows of `width`.
 fn of_pixels(pixels: &[Shifted], width: u32) -> Option<BiasStatement> {
     let count = (3 * pixels.len()) as f64;
     let mean = pixels.iter().flat_map(|pixel| pixel.mean).sum::<f64>() / count;
-    let blocks = blocks(pixels, width.max(1) as usize, FLOOR * mean * mean);
+    let blocks = blocks(pixels, width, FLOOR * mean * mean);
     let square = blocks.iter().map(|block| block.sum).sum::<f64>() / count;
     // Of a single block nobody can tell: not a number.
     let high = square + Z * standard_error(&blocks, square) / count;
@@ -51,6 +53,7 @@ fn of_pixels(pixels: &[Shifted], width: u32) -> Option<BiasStatement> {
         relative_bias_high: UNRESOLVED * high.max(0.0).sqrt(),
         // Twice the shift is the bias, and it is the mean of its halves.
         brightness: shift / (count * mean),
+        crosscheck: None,
     };
     (high.is_finite() && found.brightness.is_finite()).then_some(found)
 }
@@ -64,13 +67,11 @@ struct Block {
     values: f64,
 }
 
-fn blocks(pixels: &[Shifted], width: usize, floor: f64) -> Vec<Block> {
-    let side = BLOCK.min(width.div_ceil(4));
-    let columns = width.div_ceil(side);
-    let rows = pixels.len().div_ceil(width).div_ceil(side);
-    let mut blocks = vec![Block::default(); columns * rows];
+fn blocks(pixels: &[Shifted], width: u32, floor: f64) -> Vec<Block> {
+    let grid = Blocks::new(pixels.len(), width);
+    let mut blocks = vec![Block::default(); grid.count];
     for (index, pixel) in pixels.iter().enumerate() {
-        let block = &mut blocks[index / width / side * columns + index % width / side];
+        let block = &mut blocks[grid.of(index)];
         block.sum += squared_bias(pixel, floor);
         block.values += 3.0;
     }

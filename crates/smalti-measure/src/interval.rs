@@ -1,7 +1,7 @@
 //! The interval of a ratio of two sums of squares.
 
 /// The two-sided 95 % quantile of the normal distribution.
-const Z: f64 = 1.959_963_984_540_054;
+pub const Z: f64 = 1.959_963_984_540_054;
 
 /// The central 95 % of Fisher's F distribution with `above` and `below` degrees of freedom, in the cube root
 /// approximation of Wilson, Hilferty and Paulson; 0 to `None` where that does not hold (few degrees `below`).

@@ -2,7 +2,9 @@
 //! what a series of timings says. Pure functions; no files, no clock.
 
 mod bias;
+mod blocks;
 mod compare;
+mod crosscheck;
 mod interval;
 mod not_finite;
 mod relative;
@@ -12,6 +14,7 @@ mod timing;
 
 pub use bias::{BiasStatement, bias_statement};
 pub use compare::{CompareError, Comparison, PixelDifference, compare};
+pub use crosscheck::CrosscheckStatement;
 pub use not_finite::{NotFinite, NotFinitePixel, not_finite};
 pub use repetitions::{Ends, REPETITIONS_FOR_INTERVAL, Repetitions, repetitions};
 pub use statement::{ErrorStatement, error_statement, noise};

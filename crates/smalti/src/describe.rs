@@ -1,7 +1,7 @@
 //! The summary of a render for people: a few lines that say what was made, how long it took and how good it is.
 
 use console::style;
-use smalti_measure::{BiasStatement, ErrorStatement};
+use smalti_measure::{BiasStatement, CrosscheckStatement, ErrorStatement};
 
 use crate::error_statement::SAMPLES_NEEDED;
 use crate::memory::in_words;
@@ -16,6 +16,7 @@ pub fn describe(summary: &Summary) -> String {
         ("error", error(summary)),
         ("quality", summary.quality.as_ref().map(|of| quality(of, summary)).unwrap_or_default()),
         ("radius", summary.bias.as_ref().map(radius).unwrap_or_default()),
+        ("check", check(summary)),
         ("time", time(summary)),
         ("rays", rays(summary)),
         ("photons", photons(summary)),
@@ -92,9 +93,28 @@ fn quality(record: &QualityRecord, summary: &Summary) -> String {
 
 /// What photon radii add.
 fn radius(bias: &BiasStatement) -> String {
-    let BiasStatement { relative_bias, relative_bias_high, brightness } = bias;
+    let BiasStatement { relative_bias, relative_bias_high, brightness, crosscheck: _ } = bias;
     let (likely, most) = (percent(*relative_bias), percent(*relative_bias_high));
     format!("bias by photon radii {likely} (at most {most}); brightness {:+.3} %", 100.0 * brightness)
+}
+
+/// What paths find of the light that photons bring, and what they cannot find.
+fn check(summary: &Summary) -> String {
+    let Some(bias) = &summary.bias else { return String::new() };
+    let unchecked = summary.unchecked.iter().map(|what| format!("unchecked: {what}"));
+    bias.crosscheck.as_ref().map(crosscheck).into_iter().chain(unchecked).collect::<Vec<_>>().join("; ")
+}
+
+fn crosscheck(check: &CrosscheckStatement) -> String {
+    let CrosscheckStatement { by_photons, by_paths, interval, finds: _, lacking, lacking_high } = check;
+    let brought = format!("photons bring {} of the light", percent(*by_photons));
+    let Some([low, high]) = interval else { return format!("{brought}; paths meet too little of it to check it") };
+    let found = format!("paths find {} of it again ({} to {})", percent(*by_paths), percent(*low), percent(*high));
+    if *lacking_high > 0.0 {
+        format!("{brought}, {found}: photons lack at least {}", percent(*lacking))
+    } else {
+        format!("{brought}, {found}")
+    }
 }
 
 /// A share in percent.

@@ -59,6 +59,8 @@ pub struct Summary {
     pub error: Option<ErrorStatement>,
     /// What photon radii add to the image in error; null without photons, or before two rounds. Not in `error`.
     pub bias: Option<BiasStatement>,
+    /// Light of photons that no path can find again, in words; empty without photons.
+    pub unchecked: Vec<String>,
     /// What is wrong with the image apart from noise, in words.
     pub biases: Vec<String>,
     pub tiles: Option<TilesRecord>,
@@ -163,6 +165,7 @@ pub fn summary(job: &Job, work: Work, outcome: &Outcome, developed: &Developed) 
         mean: developed.image.mean(),
         error: developed.error,
         bias: developed.bias,
+        unchecked: if developed.bias.is_some() { unchecked(&job.settings, &job.world) } else { Vec::new() },
         biases: biases(&job.settings, &job.world, outcome.capped),
         tiles: tiles(&outcome.timing),
         idle: idle.iter().sum::<f64>() / idle.len().max(1) as f64,
@@ -173,6 +176,13 @@ pub fn summary(job: &Job, work: Work, outcome: &Outcome, developed: &Developed) 
         outputs: Vec::new(),
         reproduce: repeatable(job, outcome, (least, most)).then(|| reproduce(job, outcome.mean_samples)),
     }
+}
+
+/// Light that photons alone bring.
+fn unchecked(settings: &Settings, world: &World) -> Vec<String> {
+    let points = (!world.point_lights.is_empty()).then(|| "caustics of point lights".into());
+    let gathered = settings.integrator == Integrator::Photon && world.environment.is_none();
+    points.into_iter().chain(gathered.then(|| "light that ends a final gather".into())).collect()
 }
 
 /// Whether the samples are those of whole passes: after an interruption they are of some tiles only.

@@ -1,6 +1,7 @@
 //! Renderers that must agree: streams and the oracle, and streams with streams under other settings.
 
 mod adaptive;
+mod crosscheck;
 mod oracle;
 mod photons;
 mod primary;

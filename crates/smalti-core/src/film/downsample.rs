@@ -3,7 +3,7 @@
 
 use std::borrow::Cow;
 
-use super::{Film, Image, Pixel, Shift, Tile};
+use super::{Crosscheck, Film, Image, Pixel, Shift, Tile};
 use crate::settings::Rect;
 
 impl Image {
@@ -45,7 +45,14 @@ impl Tile {
         let area = smaller(self.area, by);
         let pixels = blocks(&self.pixels, self.area.width, by).map(|block| mean_pixel(&block)).collect();
         let shifts = blocks(&self.shifts, self.area.width, by).map(|block| mean_shift(&block)).collect();
-        Self { area, counts: self.counts, pixels, shifts }
+        let checks = blocks(&self.crosschecks, self.area.width, by);
+        Self {
+            area,
+            counts: self.counts,
+            pixels,
+            shifts,
+            crosschecks: checks.map(|block| mean_check(&block)).collect(),
+        }
     }
 }
 
@@ -74,6 +81,18 @@ fn mean_shift(block: &[Shift]) -> Shift {
     let part = 1.0 / block.len() as f64;
     let sum = |half: usize, c: usize| block.iter().map(|shift| f64::from(shift[half][c])).sum::<f64>();
     std::array::from_fn(|half| std::array::from_fn(|c| (sum(half, c) * part) as f32))
+}
+
+/// The squares are those of a sum of independent ones.
+fn mean_check(block: &[Crosscheck]) -> Crosscheck {
+    let part = 1.0 / block.len() as f64;
+    let sum = |value: fn(&Crosscheck) -> f64| block.iter().map(value).sum::<f64>();
+    let halves = [sum(|check| f64::from(check.by_photons[0])), sum(|check| f64::from(check.by_photons[1]))];
+    Crosscheck {
+        by_photons: halves.map(|half| (part * half) as f32),
+        by_paths: part * sum(|check| check.by_paths),
+        squares: part * part * sum(|check| check.squares),
+    }
 }
 
 #[cfg(test)]

@@ -9,9 +9,11 @@
 //! Where sampling is adaptive, a tile takes ρ times as many samples as the film in the mean, and each counts 1 / ρ times. As
 //! ρ is decided before they are taken, the mean has no bias, whatever it is decided by.
 
+mod crosscheck;
 mod downsample;
 mod image;
 
+pub use crosscheck::{Crosscheck, Crosschecked};
 pub use image::Image;
 
 use crate::mutant::mutant;
@@ -186,13 +188,15 @@ pub struct Tile {
     pub pixels: Vec<Pixel>,
     /// What photon radii add to them; empty where no photons are asked.
     pub shifts: Vec<Shift>,
+    /// What photons bring and paths find again; empty where nothing is found twice.
+    pub crosschecks: Vec<Crosscheck>,
 }
 
 impl Tile {
     /// An empty tile.
     pub fn new(area: Rect) -> Self {
         let pixels = vec![Pixel::default(); area.pixels()];
-        Self { area, counts: Counts::default(), pixels, shifts: Vec::new() }
+        Self { area, counts: Counts::default(), pixels, shifts: Vec::new(), crosschecks: Vec::new() }
     }
 
     /// Samples that every pixel has.

@@ -17,7 +17,7 @@ use crate::scene::View;
 
 /// The least radius in the first round, in pixels. A spot of light that is much smaller than a pixel is met by few of its
 /// samples, and is all noise.
-const PIXELS: f64 = 0.5;
+const PIXELS: f64 = 0.25;
 
 /// Kernels for the photons of a round.
 pub struct Kernels<'a> {

@@ -178,6 +178,12 @@ impl Plan {
         shown.unwrap_or(Quantity::Radiance)
     }
 
+    /// Whether paths find again what photons bring: lamps whose caustics are in the map can be hit.
+    pub fn finds_twice(&self) -> bool {
+        let in_map = self.photons.as_ref().is_some_and(|photons| photons.in_map.contains(&1));
+        in_map && self.has(|stage| *stage == Stage::Caustic) && self.has(|stage| *stage == Stage::Emission)
+    }
+
     /// Whether some stage of the plan meets `test`.
     pub fn has(&self, test: impl Fn(&Stage) -> bool) -> bool {
         self.stages.iter().any(test)

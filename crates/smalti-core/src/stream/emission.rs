@@ -3,8 +3,9 @@
 //! After a diffuse bounce the same light could have been found by a shadow ray, so the hit is weighed by the balance
 //! heuristic (Veach and Guibas 1995): pdf / (pdf + N · pdf of the light samples). After the camera or a specular bounce
 //! only a hit finds it, and it counts whole; unless it is in the caustic map, which has what a diffuse and then only
-//! specular bounces lead to. Emission is counted once in every case.
+//! specular bounces lead to. Emission is counted once in every case; what is in the map is noted as found by paths.
 
+use super::slots::Way;
 use super::{DIRECTION, DISTANCE, ORIGIN, PRIM, SLOT, Slots, Stream, THROUGHPUT};
 use crate::lanes::{Lanes, V3};
 use crate::light::sample::pdf_of_hit;
@@ -47,6 +48,12 @@ pub fn run<L: Lanes>(
         if let Some(in_map) = in_map {
             let elsewhere = l.lt(by_scatter, l.f(0.0)) & l.eq_u(l.gather_u(in_map, number), l.u(1));
             weight = l.select(elsewhere, l.f(0.0), weight);
+            let twice = elsewhere & active & front;
+            if l.any(twice) {
+                let found = V3::new(emitter[0], emitter[1], emitter[2]).scale(hits.eta(l, at));
+                let found = hits.v3(l, THROUGHPUT, at) * found;
+                slots.add_twice(l, twice, hits.u(l, SLOT, at), (Way::Paths, found));
+            }
         }
 
         let radiance = V3::new(emitter[0], emitter[1], emitter[2]).scale(weight * hits.eta(l, at));

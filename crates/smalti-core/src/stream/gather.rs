@@ -13,6 +13,7 @@
 
 use core::f32::consts::FRAC_1_PI;
 
+use super::slots::Way;
 use super::{DIRECTION, ORIGIN, PRIM, SLOT, Slots, Stream, THROUGHPUT, surface};
 use crate::lanes::{Lanes, V3};
 use crate::photon::gather::{Gather, Query};
@@ -73,7 +74,7 @@ pub fn caustic<L: Lanes>(
             ask(l, (vertices, at), asks, counts.scale(l.f(1.0) / chance), asking);
         }
     }
-    answer(l, context, asking, slots);
+    answer(l, context, asking, (Adds::Twice, slots));
 }
 
 /// Ends the paths whose last bounces were not all specular: adds all light that their vertices reflect. The others stay
@@ -100,7 +101,7 @@ pub fn last<L: Lanes>(
         }
     }
     core::mem::swap(vertices, first);
-    answer(l, context, asking, slots);
+    answer(l, context, asking, (Adds::Once, slots));
 }
 
 /// Ends all paths at their vertices: adds what `quantity` says of the photons there. Each asks one of the map's `trees`,
@@ -140,15 +141,27 @@ fn ask<L: Lanes>(l: L, (vertices, at): (&Stream, usize), asks: L::M, counts: V3<
     push.u(PRIM, vertices.u(l, PRIM, at)).u(SLOT, vertices.u(l, SLOT, at));
 }
 
+/// Whether paths find again what the map says.
+#[derive(Clone, Copy, PartialEq)]
+enum Adds {
+    /// Paths end at the map.
+    Once,
+    /// Paths go on and meet the same light.
+    Twice,
+}
+
 /// Asks the map for all of them.
 #[inline(always)]
-fn answer<L: Lanes>(l: L, context: &Context<'_>, asking: &Stream, slots: &mut Slots) {
+fn answer<L: Lanes>(l: L, context: &Context<'_>, asking: &Stream, (adds, slots): (Adds, &mut Slots)) {
     for at in (0..asking.len()).step_by(L::WIDTH) {
         let (slot, asks) = (asking.u(l, SLOT, at), asking.active(l, at));
         let query = query(l, context, asking, at, asks);
         let (found, counts) = (context.gather.irradiance(l, &query), asking.v3(l, THROUGHPUT, at));
         slots.add(l, asks, slot, counts * found.irradiance);
         slots.add_shift(l, asks, slot, counts * (found.irradiance - found.inner));
+        if adds == Adds::Twice {
+            slots.add_twice(l, asks, slot, (Way::Photons, counts * found.irradiance));
+        }
     }
 }
 

@@ -8,15 +8,48 @@ pub struct Slots {
     radiance: Vec<[f32; 3]>,
     /// Where photons are asked: what their radius may add, or half of it (see [`Slots::shift`]).
     shift: Vec<[f32; 3]>,
+    /// Where paths find again what photons bring: the grey of what photons bring and of what paths find.
+    twice: Vec<[f32; 2]>,
+}
+
+/// The two ways of finding the light of a caustic map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Way {
+    /// By the photons of the map.
+    Photons,
+    /// By a path that meets the lamp.
+    Paths,
 }
 
 impl Slots {
-    /// `count` black slots; with `shift` also for what photon radii add.
-    pub fn reset(&mut self, count: usize, shift: bool) {
+    /// `count` black slots; with `shift` also for what photon radii add, with `twice` for what is found in two ways.
+    pub fn reset(&mut self, count: usize, shift: bool, twice: bool) {
         self.radiance.clear();
         self.radiance.resize(count, [0.0; 3]);
         self.shift.clear();
         self.shift.resize(if shift { count } else { 0 }, [0.0; 3]);
+        self.twice.clear();
+        self.twice.resize(if twice { count } else { 0 }, [0.0; 2]);
+    }
+
+    /// For each sample the grey of what photons bring and of what paths find again.
+    pub fn twice(&self) -> &[[f32; 2]] {
+        &self.twice
+    }
+
+    /// Adds to what is found in one of two ways, where that is noted.
+    #[inline(always)]
+    pub fn add_twice<L: Lanes>(&mut self, l: L, mask: L::M, slot: L::U, (way, radiance): (Way, Rgb<L>)) {
+        if self.twice.is_empty() {
+            return;
+        }
+        let (mut slots, mut greys) = ([0; 16], [0.0; 16]);
+        l.store_u(slot & l.u(0xffff), &mut slots);
+        l.store((radiance.x + radiance.y + radiance.z) * l.f(1.0 / 3.0), &mut greys);
+        let active = l.bitmask(mask);
+        for lane in (0..L::WIDTH).filter(|lane| active >> lane & 1 == 1) {
+            self.twice[slots[lane] as usize][way as usize] += greys[lane];
+        }
     }
 
     /// For each sample the difference of what photons within their radius and within half of its disc say. As a disc's

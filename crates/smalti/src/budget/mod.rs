@@ -137,7 +137,7 @@ mod tests {
 
     #[test]
     fn noise_and_bias_add_up_in_squares() {
-        let bias = BiasStatement { relative_bias: 0.02, relative_bias_high: 0.03, brightness: 0.0 };
+        let bias = BiasStatement { relative_bias: 0.02, relative_bias_high: 0.03, brightness: 0.0, crosscheck: None };
         let known = statement(Some(0.04), 0);
         assert!((at_most(Some(&known), Some(&bias)).unwrap() - 0.05).abs() < 1e-15);
         assert_eq!(at_most(Some(&known), None), Some(0.04));

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use smalti_core::film::{Pixel, Shift, Shifted};
+use smalti_core::film::{Crosscheck, Crosschecked, Pixel, Shift, Shifted};
 use smalti_core::photon::{Kind, Photons};
 use smalti_core::scene::World;
 use smalti_core::settings::{Integrator, Settings};
@@ -20,7 +20,7 @@ pub struct Need<'a> {
     pub downsample: u32,
     /// Bytes of photon maps.
     pub photons: u64,
-    /// Whether the film notes what photon radii add.
+    /// Whether the film notes what photon radii add, and what paths find again.
     pub shifts: bool,
     /// Triangles, polygons and spheres that are compiled and put into trees.
     pub shapes: u64,
@@ -32,7 +32,10 @@ const SHAPE_BYTES: u64 = 400;
 
 /// Bytes that film and image take at most. `None`: more than can be counted.
 fn film_bytes(settings: &Settings, downsample: u32, shifts: bool) -> Option<u64> {
-    let (shift, shifted) = if shifts { (size_of::<Shift>(), size_of::<Shifted>()) } else { (0, 0) };
+    let noted = size_of::<Shift>() + size_of::<Crosscheck>();
+    // One after the other.
+    let looked_at = size_of::<Shifted>().max(size_of::<Crosschecked>());
+    let (shift, shifted) = if shifts { (noted, looked_at) } else { (0, 0) };
     let film = (size_of::<Pixel>() + shift) as u64;
     let image = (size_of::<[f32; 3]>() + shifted) as u64;
     // The film becomes a smaller one, and that the image.

@@ -1,24 +1,27 @@
 //! Is the light that is there in the picture, and is what renders state of their error true, in rooms of unlike scales?
 //!
 //! ```text
-//! rooms [--seeds 40] [--first 0] [--rooms 30] [--spp 64] [--photons N] [--truth-spp 1024] [--path-spp 4096] [--write FOLDER]
+//! rooms [--seeds 40] [--first 0] [--rooms 30] [--spp 64] [--photons N] [--truth-spp 4096] [--path-spp 4096]
+//!       [--truths FOLDER] [--write FOLDER]
 //! ```
 //! Renders each random room (see `smalti_tests::rooms`) with `auto` at 64 × 64 pixels, 64 samples and default settings
 //! (or others), many times, each time with another seed. The truth is a render by `auto` with many more samples and photons; its mean
-//! stands beside that of a render by `path`. Prints a line of CSV for each room. With `--write FOLDER` the rooms are
-//! written as scene files instead.
+//! stands beside that of a render by `path`. Prints a line of CSV for each room. With `--truths FOLDER` truths are kept
+//! there, and read where they are. With `--write FOLDER` the rooms are written as scene files instead.
+
+mod truth;
 
 use std::fs;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
-use smalti_core::film::{Film, Image};
-use smalti_core::render::{Level, Renderer};
+use smalti_core::film::Image;
 use smalti_core::scene::World;
 use smalti_core::settings::{Integrator, Settings};
-use smalti_measure::{BiasStatement, ErrorStatement, bias_statement, compare, error_statement};
-use smalti_scheduler::{Cancel, pool, render};
+use smalti_measure::{BiasStatement, ErrorStatement, bias_statement, compare, error_statement, quantile};
 use smalti_tests::rooms::{self, room};
+
+use crate::truth::{Measured, Truth, brightness, greys};
 
 /// Pixels this much brighter by photons than the whole picture are those of a caustic.
 const CAUSTIC: f64 = 3.0;
@@ -31,6 +34,7 @@ struct Arguments {
     photons: Option<u32>,
     truth_spp: u32,
     path_spp: u32,
+    truths: Option<PathBuf>,
     write: Option<PathBuf>,
 }
 
@@ -45,8 +49,8 @@ fn main() -> Result<()> {
         return Ok(());
     }
     println!(
-        "room,decades,covered,open,above,median_high_by_true,true_error,stated,bias_high,mean_off,mean_se,\
-         caustic_off,caustic_se,path_off,path_error"
+        "room,decades,covered,open,above,needed,median_high_by_true,true_error,stated,bias_high,mean_off,mean_se,\
+         caustic_off,caustic_se,path_off,path_se,truth_se,truth_error,unknown"
     );
     for number in numbers {
         let line = study(number, &arguments).with_context(|| format!("room {number}"))?;
@@ -62,8 +66,9 @@ fn read() -> Result<Arguments> {
         rooms: rooms::ROOMS,
         spp: 64,
         photons: None,
-        truth_spp: 1024,
+        truth_spp: 4096,
         path_spp: 4096,
+        truths: None,
         write: None,
     };
     let mut words = std::env::args().skip(1);
@@ -76,6 +81,7 @@ fn read() -> Result<Arguments> {
             "--spp" => read.spp = value.parse()?,
             "--photons" => read.photons = Some(value.parse()?),
             "--truth-spp" => read.truth_spp = value.parse()?,
+            "--truths" => read.truths = Some(value.into()),
             "--write" => read.write = Some(value.into()),
             "--path-spp" => read.path_spp = value.parse()?,
             _ => bail!("unknown flag {word}"),
@@ -91,52 +97,38 @@ struct Rendered {
     bias: Option<BiasStatement>,
 }
 
-fn rendered(world: &World, settings: Settings) -> Result<Rendered> {
-    let settings = Settings { width: 64, height: 64, ..settings };
-    let pool = pool(0)?;
-    let renderer = pool.install(|| Renderer::new(world, settings, Level::available()[0]))?;
-    let film = Film::new(renderer.settings().area(), 32);
-    let film = render(&renderer, film, &pool, &Cancel::default(), None)?.film;
-    let error = error_statement(&film).context("it takes 32 samples a pixel")?;
-    Ok(Rendered { image: film.develop(), error, bias: bias_statement(&film) })
-}
-
 impl Rendered {
-    /// Its pixels as greys; everything in the rooms is grey.
-    fn greys(&self) -> impl Iterator<Item = f64> {
-        self.image.pixels.iter().map(|pixel| pixel.map(f64::from).iter().sum::<f64>() / 3.0)
-    }
-
-    fn brightness(&self) -> f64 {
-        self.image.mean().iter().sum::<f64>() / 3.0
+    fn new(world: &World, settings: Settings, truth: &Truth) -> Result<Self> {
+        let mut film = truth::film(world, settings)?;
+        truth.cut_film(&mut film);
+        let error = error_statement(&film).context("it takes 32 samples a pixel")?;
+        Ok(Self { image: film.develop(), error, bias: bias_statement(&film) })
     }
 }
 
 fn study(number: u64, arguments: &Arguments) -> Result<String> {
     let world = room(number);
-    let auto = |seed, spp| Settings { integrator: Integrator::Auto, seed, spp, ..Settings::default() };
-    let photons = Some(1 << 20);
-    let truth = rendered(&world, Settings { photons, ..auto(1 << 32, arguments.truth_spp) })?;
-    let path = rendered(
-        &world,
-        Settings { integrator: Integrator::Path, spp: arguments.path_spp, seed: 7, ..Settings::default() },
-    )?;
-    let brightness = truth.brightness();
-    let is_caustic = |pixel: f64| pixel > CAUSTIC * brightness;
+    let samples = [arguments.truth_spp, arguments.path_spp];
+    let truth = Truth::of(number, &world, samples, arguments.truths.as_deref())?;
+    let (known, own) = (&truth.auto.image, truth.auto.relative_error());
+    let bright = brightness(known);
+    let is_caustic = |pixel: f64| pixel > CAUSTIC * bright;
     let mut room = Room::default();
     for seed in 0..arguments.seeds {
-        let image = rendered(&world, Settings { photons: arguments.photons, ..auto(seed, arguments.spp) })?;
-        let error = compare(&image.image, &truth.image, 0)?.relative_error.context("the truth is black")?;
+        let settings = Settings { integrator: Integrator::Auto, seed, spp: arguments.spp, ..Settings::default() };
+        let image = Rendered::new(&world, Settings { photons: arguments.photons, ..settings }, &truth)?;
+        let error = compare(&image.image, known, 0)?.relative_error.context("the truth is black")?;
         // The truth has noise of its own.
-        let own = truth.error.relative_error;
         room.count((error * error - own * own).max(0.0).sqrt(), &image);
-        room.means.push(image.brightness() / brightness - 1.0);
-        let caustic = || truth.greys().zip(image.greys()).filter(|(truth, _)| is_caustic(*truth));
+        room.means.push(brightness(&image.image) / bright - 1.0);
+        let caustic = || greys(known).zip(greys(&image.image)).filter(|(truth, _)| is_caustic(*truth));
         let there = caustic().map(|(truth, _)| truth).sum::<f64>();
         room.caustics.push(if there > 0.0 { caustic().map(|(_, x)| x).sum::<f64>() / there - 1.0 } else { 0.0 });
     }
-    let path_off = path.brightness() / brightness - 1.0;
-    Ok(format!("{},{path_off:.4},{:.4}", room.line(), path.error.relative_error))
+    let path_off = brightness(&truth.path.image) / bright - 1.0;
+    let unknown = truth.judged.iter().filter(|judged| !**judged).count();
+    let [truth_se, path_se] = [&truth.auto, &truth.path].map(Measured::error_of_mean);
+    Ok(format!("{},{path_off:.4},{path_se:.4},{truth_se:.4},{own:.4},{unknown}", room.line()))
 }
 
 /// The renders of a room.
@@ -146,6 +138,8 @@ struct Room {
     stated: Vec<f64>,
     biases: Vec<f64>,
     ratios: Vec<f64>,
+    /// The parts of the stated bias that the truth needs beside noise.
+    needed: Vec<f64>,
     below: usize,
     above: usize,
     open: usize,
@@ -160,6 +154,8 @@ impl Room {
         self.below += usize::from(truth < image.error.relative_error_low);
         self.above += usize::from(high.is_some_and(|high| truth > high));
         self.open += usize::from(high.is_none());
+        let noise = image.error.relative_error_high.unwrap_or(f64::INFINITY);
+        self.needed.push((truth * truth - noise * noise).max(0.0).sqrt() / bias.max(f64::MIN_POSITIVE));
         self.ratios.push(high.unwrap_or(f64::INFINITY) / truth);
         self.truths.push(truth);
         self.stated.push(image.error.relative_error);
@@ -173,8 +169,9 @@ impl Room {
             [&self.ratios, &self.truths, &self.stated, &self.biases].map(|all| median(all));
         let [(mean_off, mean_se), (caustic_off, caustic_se)] = [&self.means, &self.caustics].map(|all| moments(all));
         let (open, above) = (self.open, self.above);
+        let needed = quantile(&self.needed, 0.95).unwrap_or(f64::NAN);
         format!(
-            "{covered:.3},{open},{above},{ratio:.2},{truth:.4},{stated:.4},{bias:.4},\
+            "{covered:.3},{open},{above},{needed:.2},{ratio:.2},{truth:.4},{stated:.4},{bias:.4},\
              {mean_off:.4},{mean_se:.4},{caustic_off:.4},{caustic_se:.4}"
         )
     }
