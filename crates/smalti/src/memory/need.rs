@@ -171,9 +171,9 @@ mod tests {
     }
 
     #[test]
-    fn a_pixel_takes_108_bytes_and_96_more_where_there_are_photons() {
+    fn a_pixel_takes_108_bytes_and_120_more_where_there_are_photons() {
         let of = |width, height, by, shifts| film_bytes(&Settings { width, height, ..Settings::default() }, by, shifts);
-        assert_eq!((of(10, 10, 1, false), of(10, 10, 1, true)), (Some(10_800), Some(20_400)));
+        assert_eq!((of(10, 10, 1, false), of(10, 10, 1, true)), (Some(10_800), Some(22_800)));
         assert_eq!(of(10, 10, 2, false), Some(100 * 96 + 25 * 108));
         assert_eq!(of(u32::MAX, u32::MAX, 1, false), None);
     }
