@@ -1,8 +1,8 @@
 //! The name of a world: what light and cameras can see of it, in a fixed order, as XXH3-128.
 
 use glam::DVec3;
-use smalti_core::scene::World;
 use smalti_core::scene::world::{Material, Rgb};
+use smalti_core::scene::{Frame, Origin, World, contact};
 use xxhash_rust::xxh3::Xxh3;
 
 /// Bytes that are hashed at a time.
@@ -13,7 +13,8 @@ const CHUNK: usize = 1 << 16;
 /// Hashed are, little-endian, with -0 as +0: for each list its length as u64 and its items (polygons, spheres, meshes,
 /// point lights, environment, cameras). Lengths of inner lists and indices are u64 and u32, all numbers f64; an option
 /// is a byte 0 or 1 and its value; a surface's material is a byte for the kind (lambert 0, mirror 1, dielectric 2, one
-/// that absorbs 3) and its numbers.
+/// that absorbs 3) and its numbers. Which of two coinciding surfaces was written first is hashed where that is not the one
+/// that is listed first.
 pub fn of(world: &World) -> String {
     let mut sink = Sink { hasher: Xxh3::new(), buffer: Vec::with_capacity(2 * CHUNK) };
     sink.surfaces(world);
@@ -28,6 +29,7 @@ pub fn of(world: &World) -> String {
         sink.points(&[camera.eye, camera.look_at, camera.up]);
         sink.number(camera.fov);
     }
+    sink.order(world);
     sink.finish()
 }
 
@@ -55,6 +57,28 @@ impl Sink {
             self.count(mesh.faces.len());
             mesh.faces.as_flattened().iter().for_each(|index| self.bytes(&index.to_le_bytes()));
             self.skin(world.materials[mesh.material], mesh.radiance);
+        }
+    }
+
+    /// Pairs of coinciding surfaces of which the second in these lists was written first.
+    fn order(&mut self, world: &World) {
+        if world.order.is_as_listed() {
+            return;
+        }
+        let listed = |surface: Origin| match surface {
+            Origin::Polygon(index) => (0, index, 0),
+            Origin::Mesh(index, triangle) => (1, index, triangle),
+            Origin::Sphere(index) => (2, index, 0),
+        };
+        let turned = |[a, b]: &[Origin; 2]| (world.place(*a) < world.place(*b)) != (listed(*a) < listed(*b));
+        let pairs = contact::pairs(world, &Frame::of(world));
+        let mut turned: Vec<_> =
+            pairs.iter().filter(|pair| pair.coincides()).map(|pair| pair.of).filter(turned).collect();
+        turned.sort_by_key(|pair| pair.map(listed));
+        for (kind, index, triangle) in turned.iter().flatten().map(|surface| listed(*surface)) {
+            self.bytes(&[kind]);
+            self.bytes(&index.to_le_bytes());
+            self.bytes(&triangle.to_le_bytes());
         }
     }
 

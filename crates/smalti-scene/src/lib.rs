@@ -13,8 +13,10 @@ mod hash;
 mod light;
 mod material;
 mod mesh;
+mod place;
 mod polygon;
 mod render_table;
+mod soundness;
 mod surface;
 mod world;
 
@@ -48,7 +50,7 @@ pub fn load(path: &Path) -> Result<Loaded, SceneError> {
     let name = path.display().to_string();
     let text = file::text(path).map_err(|(fault, text)| SceneError::new(&name, text, fault))?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    match document::parse(&text).and_then(|document| world::read(&document, folder)) {
+    match document::parse(&text).and_then(|document| world::read(&document, &text, folder)) {
         Ok((world, settings, notes)) => Ok(Loaded { scene_hash: hash::of(&world), world, settings, notes }),
         Err(fault) => Err(SceneError::new(&name, text, fault)),
     }

@@ -96,3 +96,73 @@ fn the_hash_is_of_the_world_not_of_the_words() {
     assert_ne!(plain, hash("[[mesh]]\nmaterial = 'white'\nfile = 'b.PLY'\nscale = 2\n"));
     assert_ne!(plain, hash(&format!("[[mesh]]\nmaterial = 'white'\nradiance = 1\n{written}")));
 }
+
+/// Two squares in one place, one a quad and one a mesh.
+#[test]
+fn the_order_of_coinciding_surfaces_is_hashed_and_kept() {
+    let corners = "vertices = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]\n";
+    let quad = format!("[[quad]]\nmaterial = 'white'\n{corners}");
+    let mesh = |lift: &str| {
+        let corners = corners.replace(", 0]", &format!(", {lift}]"));
+        format!("[[mesh]]\nmaterial = 'white'\nfaces = [[0, 1, 2], [0, 2, 3]]\n{corners}")
+    };
+    let [quad_first, mesh_first] =
+        [format!("{quad}{}", mesh("0")), format!("{}{quad}", mesh("0"))].map(|rest| alone(&rest));
+    assert!(quad_first.world.order.polygons[0] < quad_first.world.order.meshes[0]);
+    assert!(mesh_first.world.order.polygons[0] > mesh_first.world.order.meshes[0]);
+    assert_ne!(quad_first.scene_hash, mesh_first.scene_hash, "they look different");
+    let apart = [format!("{quad}{}", mesh("1")), format!("{}{quad}", mesh("1"))].map(|rest| alone(&rest).scene_hash);
+    assert_eq!(apart[0], apart[1], "they look the same");
+}
+
+const GLASS: &str = "[material.glass]\ndielectric = { ior = 1.5 }\n";
+
+#[test]
+fn open_glass_is_noted_with_its_line_and_a_box_of_quads_is_not() {
+    let quad = |corners: [[u32; 3]; 4]| format!("[[quad]]\nmaterial = 'glass'\nvertices = {corners:?}\n");
+    let sides = [
+        [[0, 0, 0], [0, 0, 1], [0, 1, 1], [0, 1, 0]],
+        [[1, 0, 0], [1, 1, 0], [1, 1, 1], [1, 0, 1]],
+        [[0, 0, 0], [1, 0, 0], [1, 0, 1], [0, 0, 1]],
+        [[0, 1, 0], [0, 1, 1], [1, 1, 1], [1, 1, 0]],
+        [[0, 0, 0], [0, 1, 0], [1, 1, 0], [1, 0, 0]],
+        [[0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]],
+    ];
+    let of =
+        |count: usize| alone(&format!("{GLASS}{}", sides[..count].iter().map(|side| quad(*side)).collect::<String>()));
+    assert_eq!(of(6).notes, [""; 0]);
+    for count in [1, 5] {
+        let notes = of(count).notes;
+        let [note] = &notes[..] else { panic!("{notes:?}") };
+        assert!(note.starts_with("the surface of `glass` is open: the quad in line 12"), "{note}");
+        assert!(note.contains("4 free edges"), "{note}");
+    }
+}
+
+#[test]
+fn inside_out_and_thin_and_coarse_things_are_noted() {
+    let tetrahedron = |faces: &str| {
+        format!(
+            "{GLASS}[[mesh]]\nmaterial = 'glass'\nvertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]\nfaces = {faces}\n"
+        )
+    };
+    let outward = "[[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]";
+    let inward = "[[1, 2, 0], [3, 1, 0], [3, 2, 1], [3, 0, 2]]";
+    assert_eq!(alone(&tetrahedron(outward)).notes, [""; 0]);
+    let notes = alone(&tetrahedron(inward)).notes;
+    assert!(matches!(&notes[..], [note] if note.contains("`glass` is inside out: the mesh in line 12")), "{notes:?}");
+    let lamp = |faces: &str| tetrahedron(faces).replace("'glass'\n", "'white'\nradiance = 1\n");
+    assert_eq!(alone(&lamp(outward)).notes, [""; 0]);
+    let notes = alone(&lamp(inward)).notes;
+    assert!(matches!(&notes[..], [note] if note.contains("lamp shines inwards")), "{notes:?}");
+    let ball =
+        |z: &str, radius: &str| format!("[[sphere]]\nmaterial = 'white'\ncentre = [0, 0, {z}]\nradius = {radius}\n");
+    let notes = alone(&format!("{}{}", ball("-1e6", "1e6"), ball("0.5", "0.5"))).notes;
+    assert!(matches!(&notes[..], [note] if note.contains("the sphere in line 14 is 1.0e0 m across")), "{notes:?}");
+    let shell = |radius: &str| {
+        alone(&format!("{GLASS}{}{}", ball("0", "1"), ball("0", radius)).replace("'white'\ncentre", "'glass'\ncentre"))
+    };
+    assert_eq!(shell("0.99").notes, [""; 0]);
+    let notes = shell("0.9999998").notes;
+    assert!(matches!(&notes[..], [note] if note.contains("steps of the coordinates")), "{notes:?}");
+}

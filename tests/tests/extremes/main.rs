@@ -1,6 +1,7 @@
 //! Scenes at the edge of what can be described, and beyond: rendered right, or answered. docs/stability.md lists what each
 //! of them asks for, and what other renderers do.
 
+mod contact;
 mod counts;
 mod places;
 mod shapes;

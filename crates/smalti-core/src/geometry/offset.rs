@@ -16,6 +16,12 @@ pub fn leave<L: Lanes>(l: L, point: V3<L>, scale: L::F, normal: V3<L>) -> V3<L> 
     point.along(l, scale * l.f(error), normal)
 }
 
+/// The same, but no farther than `room`: something else is as near.
+#[inline(always)]
+pub fn leave_within<L: Lanes>(l: L, point: V3<L>, scale: L::F, room: L::F, normal: V3<L>) -> V3<L> {
+    point.along(l, l.min(scale * l.f(ERROR), room), normal)
+}
+
 /// A hit at distance `t` of a ray, moved onto the plane n·x = d that it hit.
 #[inline(always)]
 pub fn onto_plane<L: Lanes>(l: L, point: V3<L>, normal: V3<L>, offset: L::F) -> V3<L> {

@@ -2,14 +2,19 @@
 //!
 //! In a scene everything is an index into a flat table. Primitives are numbered through: faces (planar convex polygons;
 //! those that emit first, then the others; of each the polygons, then the mesh triangles), then spheres. Ties between hits
-//! at the same distance go to the lower number.
+//! at the same distance go to the lower number; where faces coincide they are numbered anew, so that it is the right one
+//! ([`contact`]).
 
 mod compile;
+pub mod contact;
+pub mod double;
 pub mod frame;
 pub mod media;
+pub mod soundness;
 pub mod world;
 
 pub use compile::{compile, newell};
+pub use contact::Touching;
 pub use frame::Frame;
 pub use media::Media;
 pub use world::World;
@@ -44,6 +49,8 @@ pub struct Scene {
     pub views: Vec<View>,
     /// What rays travel in, where some of it absorbs.
     pub media: Option<Media>,
+    /// What coincides or nearly touches, where something does.
+    pub touching: Option<Touching>,
     /// Primitives without area that were left out.
     pub dropped: usize,
 }
@@ -91,7 +98,7 @@ impl Class {
 }
 
 /// Where a primitive comes from, for messages.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Origin {
     /// Index into the world's polygons.
     Polygon(u32),
@@ -120,6 +127,11 @@ impl Scene {
     /// Corners of a face.
     pub fn face_corners(&self, face: &Face) -> &[u32] {
         &self.corners[face.first as usize..(face.first + face.count) as usize]
+    }
+
+    /// The surface id of a primitive.
+    pub fn surface(&self, prim: u32) -> u32 {
+        self.shades[prim as usize][7].to_bits()
     }
 
     /// The class of a primitive; `None` for no primitive.

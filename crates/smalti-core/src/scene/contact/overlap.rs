@@ -1,0 +1,98 @@
+//! The part of two nearly parallel convex polygons in which they lie over each other.
+
+use glam::{DVec2, DVec3};
+
+use super::STEP;
+use crate::scene::world::World;
+use crate::scene::{Frame, Origin, newell};
+
+/// Less than this part of the smaller one's area, and they are neighbours that share an edge.
+const AREA: f64 = 1e-6;
+
+/// What f64 makes of coordinates that were computed, by their size.
+const WRITTEN: f64 = 4.0 * f64::EPSILON;
+
+/// A convex polygon in the frame.
+pub struct Corners {
+    points: Vec<DVec3>,
+    normal: DVec3,
+    /// What coordinates are rounded to as they were written, in the frame.
+    written: f64,
+}
+
+impl Corners {
+    /// Those of a face of the world; a face without area has a normal of 0 and overlaps nothing.
+    pub fn new(world: &World, frame: &Frame, face: Origin) -> Self {
+        let corners = world.corners(face);
+        let largest = corners.iter().map(|corner| corner.abs().max_element()).fold(0.0, f64::max);
+        let points: Vec<DVec3> = corners.into_iter().map(|corner| frame.point(corner)).collect();
+        let normal = if points.is_empty() { DVec3::ZERO } else { newell(&points).normalize_or_zero() };
+        Self { points, normal, written: WRITTEN * largest * frame.scale }
+    }
+}
+
+/// How one polygon lies over another.
+pub struct Overlap {
+    /// Least and greatest height of the second over the first, along the first one's normal.
+    pub heights: (f64, f64),
+    /// Largest coordinate.
+    pub size: f64,
+    /// Rounding of coordinates across the plane.
+    pub step: f64,
+    /// Whether both normals point to the same side.
+    pub same_way: bool,
+}
+
+/// `None` where they do not overlap by an area.
+pub fn of(a: &Corners, b: &Corners) -> Option<Overlap> {
+    if a.normal == DVec3::ZERO || b.normal == DVec3::ZERO {
+        return None;
+    }
+    let axis = dominant(a.normal);
+    let common = clipped(&a.points, &b.points, axis);
+    let area = |points: &[DVec3]| if points.len() < 3 { 0.0 } else { newell(points).length() };
+    if area(&common) <= AREA * area(&a.points).min(area(&b.points)) {
+        return None;
+    }
+    let slope = a.normal.dot(b.normal);
+    let height = |point: &DVec3| (b.points[0] - *point).dot(b.normal) / slope;
+    let heights = common
+        .iter()
+        .map(height)
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), height| (low.min(height), high.max(height)));
+    let largest = common.iter().fold(DVec3::ZERO, |largest, point| largest.max(point.abs()));
+    let step = (STEP * a.normal.abs().dot(largest)).max(a.written).max(b.written);
+    Some(Overlap { heights, size: largest.max_element(), step, same_way: slope > 0.0 })
+}
+
+fn dominant(normal: DVec3) -> usize {
+    let size = normal.abs();
+    (0..3).reduce(|a, b| if size[b] > size[a] { b } else { a }).unwrap_or(0)
+}
+
+fn flat(point: DVec3, axis: usize) -> DVec2 {
+    DVec2::new(point[(axis + 1) % 3], point[(axis + 2) % 3])
+}
+
+/// `subject` (in its own plane) cut off along every edge of `by`, both seen along `axis` (Sutherland and Hodgman 1974).
+fn clipped(subject: &[DVec3], by: &[DVec3], axis: usize) -> Vec<DVec3> {
+    let edges = || by.iter().zip(by.iter().cycle().skip(1)).map(|(a, b)| (flat(*a, axis), flat(*b, axis)));
+    let first = flat(by[0], axis);
+    let turn = edges().map(|(a, b)| (a - first).perp_dot(b - first)).sum::<f64>().signum();
+    let mut left = subject.to_vec();
+    for (a, b) in edges() {
+        let side = |point: DVec3| turn * (b - a).perp_dot(flat(point, axis) - a);
+        let mut kept = Vec::with_capacity(left.len() + 1);
+        for (from, to) in left.iter().zip(left.iter().cycle().skip(1)) {
+            let (before, after) = (side(*from), side(*to));
+            if before >= 0.0 {
+                kept.push(*from);
+            }
+            if (before > 0.0 && after < 0.0) || (before < 0.0 && after > 0.0) {
+                kept.push(from.lerp(*to, before / (before - after)));
+            }
+        }
+        left = kept;
+    }
+    left
+}
