@@ -13,6 +13,7 @@ mod hash;
 mod light;
 mod material;
 mod mesh;
+mod note;
 mod place;
 mod polygon;
 mod render_table;
@@ -25,6 +26,7 @@ use std::path::Path;
 use smalti_core::scene::World;
 
 pub use error::SceneError;
+pub use note::{Note, Severity};
 pub use render_table::RenderTable;
 
 /// What a scene file says.
@@ -38,8 +40,8 @@ pub struct Loaded {
     /// its transformation, each surface's material by value, emission, environment and views, in f64 and in order.
     /// Comments, formatting, names, paths, mesh file formats, unused materials and `[render]` do not change it.
     pub scene_hash: String,
-    /// Warnings, each a sentence: what was dropped and what looks unintended.
-    pub notes: Vec<String>,
+    /// What was dropped, counted, and what looks unintended; in the order of the tables.
+    pub notes: Vec<Note>,
 }
 
 /// Reads the scene file at `path` and the meshes that it names (relative to its folder).

@@ -4,6 +4,7 @@ use smalti_core::scene::contact::Pair;
 use smalti_core::scene::soundness::{Names, examine};
 use smalti_core::scene::{Frame, Origin, World};
 
+use crate::note::Note;
 use crate::place::Places;
 
 /// The names that the scene file gives.
@@ -25,7 +26,7 @@ impl Names for InFile<'_> {
 }
 
 /// The notes on `world`, which the file `text` describes; `materials` are the names of its first ones.
-pub fn notes(world: &World, pairs: &[Pair], (text, places, materials): (&str, &Places, &[&str])) -> Vec<String> {
+pub fn notes(world: &World, pairs: &[Pair], (text, places, materials): (&str, &Places, &[&str])) -> Vec<Note> {
     let names = InFile { world, text, places, materials };
-    examine(world, &Frame::of(world), pairs).iter().map(|finding| finding.says(&names)).collect()
+    examine(world, &Frame::of(world), pairs).iter().map(|finding| Note::warning(finding.says(&names))).collect()
 }

@@ -10,6 +10,7 @@ use toml::de::DeTable;
 use crate::document::{Key, Section, key};
 use crate::error::Result;
 use crate::material::Palette;
+use crate::note::Note;
 use crate::place::Places;
 use crate::render_table::RenderTable;
 use crate::{camera, light, mesh, soundness, surface};
@@ -38,7 +39,7 @@ pub fn read<'d>(
     document: &'d Spanned<DeTable<'d>>,
     text: &str,
     folder: &Path,
-) -> Result<(World, RenderTable, Vec<String>)> {
+) -> Result<(World, RenderTable, Vec<Note>)> {
     let root = root(document)?;
     let mut notes = Vec::new();
     let cameras = camera::read(&root)?;
@@ -58,7 +59,7 @@ pub fn read<'d>(
     remove_clear(&mut world, &mut places, &names, &mut notes);
     world.order = places.order();
     if !has_light(&world) {
-        notes.push("nothing in the scene emits light: the image will be black".to_owned());
+        notes.push(Note::warning("nothing in the scene emits light: the image will be black"));
     }
     let pairs = contact::pairs(&world, &Frame::of(&world));
     notes.extend(soundness::notes(&world, &pairs, (text, &places, &names)));
@@ -66,7 +67,7 @@ pub fn read<'d>(
 }
 
 /// Removes surfaces that cannot be seen: a dielectric with an index of exactly 1 that neither absorbs nor emits.
-fn remove_clear(world: &mut World, places: &mut Places, names: &[&str], notes: &mut Vec<String>) {
+fn remove_clear(world: &mut World, places: &mut Places, names: &[&str], notes: &mut Vec<Note>) {
     let World { materials, polygons, spheres, meshes, .. } = world;
     let mut removed = vec![0usize; materials.len()];
     let mut keep = |material: usize, radiance: Option<Rgb>| {
@@ -82,7 +83,8 @@ fn remove_clear(world: &mut World, places: &mut Places, names: &[&str], notes: &
     places.retain([&kept[0], &kept[1], &kept[2]]);
     for (name, count) in names.iter().zip(removed).filter(|(_, count)| *count > 0) {
         let what = if count == 1 { "1 surface is".to_owned() } else { format!("{count} surfaces are") };
-        notes.push(format!("material `{name}` has an index of exactly 1 and cannot be seen: {what} removed"));
+        let why = "has an index of exactly 1 and cannot be seen";
+        notes.push(Note::note(format!("material `{name}` {why}: {what} removed")));
     }
 }
 

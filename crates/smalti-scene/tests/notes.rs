@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use smalti_core::scene::World;
-use smalti_scene::{Loaded, load};
+use smalti_scene::{Loaded, Note, Severity, load};
 
 const CAMERA: &str = "[camera]\neye = [0, -5, 1]\nlook_at = [0, 0, 1]\nup = [0, 0, 1]\nfov = 60\n\
                       [material.white]\nlambert = { albedo = 0.5 }\n[environment]\nradiance = 1\n";
@@ -33,7 +33,7 @@ fn clear_surfaces_are_removed_unless_they_emit() {
     let loaded = alone(&air("1"));
     assert_eq!(counts(&loaded.world), [0, 1, 0]);
     let note = "material `air` has an index of exactly 1 and cannot be seen: 2 surfaces are removed";
-    assert_eq!(loaded.notes, [note]);
+    assert_eq!(loaded.notes, [Note::note(note)]);
     assert_eq!(counts(&alone(&air("1.0000001")).world), [1, 2, 0]);
 }
 
@@ -42,7 +42,7 @@ fn triangles_without_area_are_dropped_and_noted() {
     let mesh = "[[mesh]]\nmaterial = 'white'\nvertices = [[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0]]\n\
                 faces = [[0, 1, 2], [0, 1, 3]]\n";
     let loaded = alone(mesh);
-    assert_eq!(loaded.notes, ["mesh 1: 1 of 2 triangles have no area and are dropped"]);
+    assert_eq!(loaded.notes, [Note::note("mesh 1: 1 of 2 triangles have no area and are dropped")]);
     assert_eq!(loaded.world.meshes[0].faces, [[0, 1, 3]]);
 }
 
@@ -53,7 +53,7 @@ fn a_dark_scene_is_noted() {
     let dark = "[[light.point]]\nposition = [0, 0, 3]\nintensity = 0\n";
     fs::write(&path, CAMERA.replace("radiance = 1", "radiance = [0, 0, 0]") + dark).unwrap();
     let loaded = load(&path).unwrap();
-    assert_eq!(loaded.notes, ["nothing in the scene emits light: the image will be black"]);
+    assert_eq!(loaded.notes, [Note::warning("nothing in the scene emits light: the image will be black")]);
     assert_eq!((loaded.world.environment, loaded.world.point_lights.len()), (None, 0));
 }
 
@@ -97,6 +97,12 @@ fn the_hash_is_of_the_world_not_of_the_words() {
     assert_ne!(plain, hash(&format!("[[mesh]]\nmaterial = 'white'\nradiance = 1\n{written}")));
 }
 
+/// The texts of the notes, all of which are warnings.
+fn warnings(loaded: &Loaded) -> Vec<&str> {
+    assert!(loaded.notes.iter().all(|note| note.severity == Severity::Warning), "{:?}", loaded.notes);
+    loaded.notes.iter().map(|note| note.text.as_str()).collect()
+}
+
 /// Two squares in one place, one a quad and one a mesh.
 #[test]
 fn the_order_of_coinciding_surfaces_is_hashed_and_kept() {
@@ -130,9 +136,10 @@ fn open_glass_is_noted_with_its_line_and_a_box_of_quads_is_not() {
     ];
     let of =
         |count: usize| alone(&format!("{GLASS}{}", sides[..count].iter().map(|side| quad(*side)).collect::<String>()));
-    assert_eq!(of(6).notes, [""; 0]);
+    assert_eq!(warnings(&of(6)), [""; 0]);
     for count in [1, 5] {
-        let notes = of(count).notes;
+        let loaded = of(count);
+        let notes = warnings(&loaded);
         let [note] = &notes[..] else { panic!("{notes:?}") };
         assert!(note.starts_with("the surface of `glass` is open: the quad in line 12"), "{note}");
         assert!(note.contains("4 free edges"), "{note}");
@@ -148,21 +155,25 @@ fn inside_out_and_thin_and_coarse_things_are_noted() {
     };
     let outward = "[[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]";
     let inward = "[[1, 2, 0], [3, 1, 0], [3, 2, 1], [3, 0, 2]]";
-    assert_eq!(alone(&tetrahedron(outward)).notes, [""; 0]);
-    let notes = alone(&tetrahedron(inward)).notes;
+    assert_eq!(warnings(&alone(&tetrahedron(outward))), [""; 0]);
+    let loaded = alone(&tetrahedron(inward));
+    let notes = warnings(&loaded);
     assert!(matches!(&notes[..], [note] if note.contains("`glass` is inside out: the mesh in line 12")), "{notes:?}");
     let lamp = |faces: &str| tetrahedron(faces).replace("'glass'\n", "'white'\nradiance = 1\n");
-    assert_eq!(alone(&lamp(outward)).notes, [""; 0]);
-    let notes = alone(&lamp(inward)).notes;
+    assert_eq!(warnings(&alone(&lamp(outward))), [""; 0]);
+    let loaded = alone(&lamp(inward));
+    let notes = warnings(&loaded);
     assert!(matches!(&notes[..], [note] if note.contains("lamp shines inwards")), "{notes:?}");
     let ball =
         |z: &str, radius: &str| format!("[[sphere]]\nmaterial = 'white'\ncentre = [0, 0, {z}]\nradius = {radius}\n");
-    let notes = alone(&format!("{}{}", ball("-1e6", "1e6"), ball("0.5", "0.5"))).notes;
+    let loaded = alone(&format!("{}{}", ball("-1e6", "1e6"), ball("0.5", "0.5")));
+    let notes = warnings(&loaded);
     assert!(matches!(&notes[..], [note] if note.contains("the sphere in line 14 is 1.0e0 m across")), "{notes:?}");
     let shell = |radius: &str| {
         alone(&format!("{GLASS}{}{}", ball("0", "1"), ball("0", radius)).replace("'white'\ncentre", "'glass'\ncentre"))
     };
-    assert_eq!(shell("0.99").notes, [""; 0]);
-    let notes = shell("0.9999998").notes;
+    assert_eq!(warnings(&shell("0.99")), [""; 0]);
+    let loaded = shell("0.9999998");
+    let notes = warnings(&loaded);
     assert!(matches!(&notes[..], [note] if note.contains("steps of the coordinates")), "{notes:?}");
 }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use smalti_core::render::{Level, Renderer};
 use smalti_core::scene::World;
 use smalti_core::settings::{Rect, Settings};
+use smalti_scene::Note;
 
 use crate::args::ImageArgs;
 use crate::exit::Failure;
@@ -27,8 +28,8 @@ pub struct Job {
     pub downsample: u32,
     /// Hash of what the scene file and its meshes say.
     pub scene_hash: String,
-    /// What the reader found worth telling.
-    pub notes: Vec<String>,
+    /// What is worth knowing and stops nothing: the reader's notes first, then those of later stages.
+    pub notes: Vec<Note>,
     /// The SIMD level to use.
     pub level: Level,
     /// What the scene suggests where no flag says otherwise: the side of a tile.

@@ -5,6 +5,7 @@ use std::io::{ErrorKind, Write};
 use console::Style;
 use serde::Serialize;
 use serde_json::json;
+use smalti_scene::{Note, Severity};
 
 use crate::args::When;
 use crate::exit::Failure;
@@ -65,6 +66,17 @@ impl Messages {
     /// Something that the user should look into.
     pub fn warning(self, text: &str) {
         self.say("warning", Style::new().yellow().bold(), text);
+    }
+
+    /// Notes, each once; if it is to be `quiet`, only warnings.
+    pub fn notes(self, notes: &[Note], quiet: bool) {
+        for Note { severity, text } in notes {
+            match severity {
+                Severity::Note if quiet => {}
+                Severity::Note => self.note(text),
+                Severity::Warning => self.warning(text),
+            }
+        }
     }
 
     /// Why the command failed.

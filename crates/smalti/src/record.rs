@@ -17,6 +17,8 @@ pub struct Subject<'a> {
     pub version: &'static str,
     pub scene: String,
     pub scene_hash: &'a str,
+    /// What is worth knowing and stops nothing, each a sentence.
+    pub notes: Vec<String>,
     #[serde(flatten)]
     pub settings: SettingsRecord,
 }
@@ -27,8 +29,14 @@ pub fn subject(job: &Job) -> Subject<'_> {
         version: env!("CARGO_PKG_VERSION"),
         scene: job.path.display().to_string(),
         scene_hash: &job.scene_hash,
+        notes: notes(job),
         settings: settings(job),
     }
+}
+
+/// The notes of a job as JSON has them.
+pub fn notes(job: &Job) -> Vec<String> {
+    job.notes.iter().map(|note| note.text.clone()).collect()
 }
 
 /// Settings as users write them.

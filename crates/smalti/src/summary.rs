@@ -22,6 +22,8 @@ pub struct Summary {
     pub version: &'static str,
     pub scene: String,
     pub scene_hash: String,
+    /// What is worth knowing about scene and settings and stops nothing, each a sentence.
+    pub notes: Vec<String>,
     #[serde(flatten)]
     pub settings: SettingsRecord,
     /// Fewest and most samples of any pixel; they differ after an interruption and where samples went to the noise.
@@ -134,6 +136,7 @@ pub fn summary(job: &Job, work: Work, outcome: &Outcome, developed: &Developed) 
         version: env!("CARGO_PKG_VERSION"),
         scene: job.path.display().to_string(),
         scene_hash: job.scene_hash.clone(),
+        notes: record::notes(job),
         settings: record::settings(job),
         samples_least: least,
         samples_most: most,

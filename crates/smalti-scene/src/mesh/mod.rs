@@ -14,6 +14,7 @@ use crate::document::{Key, Node, Section, key};
 use crate::error::{Excerpt, Fault, Result};
 use crate::file;
 use crate::material::Palette;
+use crate::note::Note;
 use crate::surface::{Skin, skin};
 use soup::{Flaw, Soup};
 
@@ -29,7 +30,7 @@ const KEYS: &[Key] = &[
 ];
 
 /// All meshes, in file order; `file` is relative to `folder`. What is dropped is noted.
-pub fn read_all(root: &Section, palette: &Palette, folder: &Path, notes: &mut Vec<String>) -> Result<Vec<Mesh>> {
+pub fn read_all(root: &Section, palette: &Palette, folder: &Path, notes: &mut Vec<Note>) -> Result<Vec<Mesh>> {
     let mut meshes = Vec::new();
     for (index, section) in root.items("mesh", "`[[mesh]]`", KEYS)?.iter().enumerate() {
         let Skin { material, radiance } = skin(section, palette)?;
@@ -90,7 +91,7 @@ fn line_of(bytes: &[u8], line: usize) -> String {
 }
 
 /// Drops triangles whose cross product of edges is zero or not finite: they cannot be hit. Says how many.
-fn drop_degenerate(name: &str, soup: &mut Soup) -> Option<String> {
+fn drop_degenerate(name: &str, soup: &mut Soup) -> Option<Note> {
     let Soup { vertices, faces } = soup;
     let all = faces.len();
     faces.retain(|face| {
@@ -99,7 +100,7 @@ fn drop_degenerate(name: &str, soup: &mut Soup) -> Option<String> {
         cross.is_finite() && cross != glam::DVec3::ZERO
     });
     let dropped = all - faces.len();
-    (dropped > 0).then(|| format!("{name}: {dropped} of {all} triangles have no area and are dropped"))
+    (dropped > 0).then(|| Note::note(format!("{name}: {dropped} of {all} triangles have no area and are dropped")))
 }
 
 #[cfg(test)]
@@ -113,7 +114,7 @@ mod tests {
         let faces = vec![[0, 1, 3], [0, 1, 2], [1, 1, 3], [0, 4, 5]];
         let mut soup = Soup { vertices, faces };
         let note = drop_degenerate("`a.ply`", &mut soup).unwrap();
-        assert_eq!(note, "`a.ply`: 3 of 4 triangles have no area and are dropped");
+        assert_eq!(note.text, "`a.ply`: 3 of 4 triangles have no area and are dropped");
         assert_eq!(soup.faces, [[0, 1, 3]]);
         assert_eq!(drop_degenerate("`a.ply`", &mut soup), None);
     }

@@ -17,7 +17,7 @@ use super::pixel;
 use crate::args::{DoctorArgs, ImageArgs};
 use crate::exit::{Failure, Status};
 use crate::job::Job;
-use crate::print;
+use crate::print::{self, Messages};
 use crate::record::{self, Subject};
 
 /// The longer side of the pictures, where `--size` does not say otherwise.
@@ -64,6 +64,7 @@ struct Found {
 /// Runs the command.
 pub fn run(args: &DoctorArgs) -> Result<Status, Failure> {
     let job = Job::load(&args.scene, &args.image, args.simd.simd)?;
+    Messages { json: false }.notes(&job.notes, args.quiet);
     if args.hunt { hunt(args, &job) } else { examination(args, job) }
 }
 

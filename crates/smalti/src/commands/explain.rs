@@ -23,7 +23,6 @@ struct Explanation<'a> {
     decisions: Vec<DecisionRecord<'a>>,
     /// Sum over the decisions.
     bytes: u64,
-    notes: &'a [String],
 }
 
 /// What the scene file holds.
@@ -70,7 +69,6 @@ fn explanation<'a>(job: &'a Job, renderer: &'a Renderer) -> Explanation<'a> {
         simd_available: available(),
         decisions: renderer.decisions().iter().map(decision_record).collect(),
         bytes: bytes(renderer),
-        notes: &job.notes,
     }
 }
 
@@ -117,7 +115,7 @@ fn text(job: &Job, renderer: &Renderer) -> String {
     text += &facts(job, renderer);
     text += "\nThe plan\n";
     text += &plan(renderer.decisions());
-    text += &job.notes.iter().map(|note| format!("\nnote: {note}\n")).collect::<String>();
+    text += &job.notes.iter().map(|note| format!("\n{note}\n")).collect::<String>();
     text
 }
 

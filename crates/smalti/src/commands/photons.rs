@@ -25,7 +25,7 @@ pub fn run(args: &PhotonsArgs, colour: When, start: Instant) -> Result<Status, F
     let messages = Messages { json: args.run.progress == ProgressArg::Json };
     let outputs = outputs::checked(&args.outputs, &args.scene, "-photons.png")?;
     let request = Request::load(args)?;
-    request.job.notes.iter().for_each(|note| messages.note(note));
+    messages.notes(&request.job.notes, args.run.quiet);
     let pool = smalti_scheduler::pool(args.run.threads as usize).map_err(Failure::user)?;
     let renderer = pool.install(|| request.renderer())?;
     let interrupt = interrupt::listen(frontend::restore).map_err(Failure::bug)?;

@@ -28,7 +28,7 @@ pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Fa
     outputs::check_beside(&outputs, args.standard_error.as_deref())?;
     let mut job = Job::load_downsampled(&args.scene, &args.image, args.downsample, args.run.work.simd.simd)?;
     let photon_map = args.photon_map.as_deref().map(|path| open_photon_map(path, &mut job)).transpose()?;
-    job.notes.iter().for_each(|note| messages.note(note));
+    messages.notes(&job.notes, args.run.quiet);
     let pool = smalti_scheduler::pool(args.run.threads as usize).map_err(Failure::user)?;
     let interrupt = interrupt::listen(frontend::restore).map_err(Failure::bug)?;
     let mode = Mode::choose(args.run.progress, args.run.quiet, colour);

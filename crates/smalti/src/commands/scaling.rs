@@ -11,7 +11,7 @@ use smalti_scheduler::{Cancel, Outcome};
 use crate::args::{ScalingArgs, Threads};
 use crate::exit::{Failure, Status};
 use crate::job::Job;
-use crate::print;
+use crate::print::{self, Messages};
 use crate::record::{self, Subject};
 use crate::table::{Align, table};
 
@@ -69,6 +69,7 @@ struct Run {
 /// Runs the command.
 pub fn run(args: &ScalingArgs) -> Result<Status, Failure> {
     let job = Job::load(&args.scene, &args.image, args.work.simd.simd)?;
+    Messages { json: false }.notes(&job.notes, args.quiet);
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let counts = thread_counts(args.threads.as_ref(), cores);
     let most = counts.iter().copied().max().unwrap_or(1);

@@ -26,7 +26,7 @@ pub fn run(args: &StudyArgs, colour: When) -> Result<Status, Failure> {
     let folder = Folder::checked(common.output.as_deref(), &common.scene, plan.preset)?;
     let question = study::question(&args.preset, &plan, &job, &scene, tile)?;
     let there = folder.open(&question, common.fresh)?;
-    job.notes.iter().for_each(|note| messages.note(note));
+    messages.notes(&job.notes, common.quiet);
     if job.settings.crop.is_some() {
         messages.note("the scene's crop is left out: a study renders whole images");
     }

@@ -8,7 +8,7 @@ use smalti_scheduler::{Outcome, Photons};
 
 use super::picture::{Picture, Scale};
 use super::request::{Lights, Request};
-use crate::record::{PictureRecord, RunRecord, Work};
+use crate::record::{self, PictureRecord, RunRecord, Work};
 use crate::reproduce;
 
 /// Everything that is told of a photon map. Times in seconds; what does not exist is null.
@@ -17,6 +17,8 @@ pub struct Summary {
     pub version: &'static str,
     pub scene: String,
     pub scene_hash: String,
+    /// What is worth knowing about scene and settings and stops nothing, each a sentence.
+    pub notes: Vec<String>,
     /// `caustic` or `global`.
     pub map: &'static str,
     /// `flux`, `density` or `bounces`.
@@ -85,6 +87,7 @@ pub fn summary(request: &Request, work: Work, outcome: &Outcome, picture: &Pictu
         version: env!("CARGO_PKG_VERSION"),
         scene: job.path.display().to_string(),
         scene_hash: job.scene_hash.clone(),
+        notes: record::notes(job),
         map: request.map.name(),
         colour: request.colour.name(),
         picture: PictureRecord::new(job),

@@ -4,6 +4,7 @@ mod budget;
 mod doctor;
 mod images;
 mod mistakes;
+mod notes;
 mod photon_map;
 mod photons;
 mod quality;

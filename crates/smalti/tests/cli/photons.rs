@@ -21,7 +21,7 @@ fn a_photon_map_becomes_a_picture() {
 fn the_account_of_a_photon_map_has_every_documented_field() {
     let folder = folder();
     let summary = json(&folder, "photons room.toml --photons 20000 -o a.exr -o a.png --threads 2 --json -q");
-    let fields = "version scene scene_hash map colour camera width height crop spp seed fresnel radius lights threads simd \
+    let fields = "version scene scene_hash notes map colour camera width height crop spp seed fresnel radius lights threads simd \
                   tile setup_seconds photon_seconds render_seconds write_seconds wall_seconds photons_emitted \
                   photons_ahead photons_stored photons_nonfinite flux radius_metres photon_bytes peak_bytes hash mean \
                   scale nonfinite stopped_by outputs reproduce";

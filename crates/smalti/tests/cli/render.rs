@@ -30,7 +30,7 @@ fn quiet_says_nothing() {
 fn the_summary_has_every_documented_field() {
     let folder = folder();
     let summary = json(&folder, "render room.toml --spp 33 -o a.exr -o a.pfm --threads 2 --json -q");
-    let fields = "version scene scene_hash integrator sampler width height spp rounds shadow_rays max_bounces seed threads \
+    let fields = "version scene scene_hash notes integrator sampler width height spp rounds shadow_rays max_bounces seed threads \
                   simd tile setup_seconds photon_seconds render_seconds write_seconds wall_seconds samples rays \
                   mean_path_length photons_emitted photons_stored peak_bytes hash nonfinite mean error stopped_by \
                   target_reached reproduce";
