@@ -1,8 +1,8 @@
 //! Glass that stands on a table, glass against glass, and panes as thin as coordinates allow.
 
 use glam::{DQuat, DVec3};
-use smalti_core::scene::World;
 use smalti_core::scene::world::{Material, Order, Polygon};
+use smalti_core::scene::{Frame, World, contact, soundness};
 use smalti_core::settings::{Integrator, Settings};
 use smalti_image::hash;
 use smalti_tests::build::{at, camera, grey, material, mesh, sphere};
@@ -137,7 +137,7 @@ fn glass_on_a_grey_table_is_in_optical_contact() {
     for (k, kind) in [(0, Kind::Quads), (1, Kind::Mesh), (2, Kind::Quads), (5, Kind::Mesh)] {
         for albedo in [0.2, 0.5, 0.8] {
             let world = elsewhere(&on_a_table((kind, 31.0, albedo), Kind::Mesh, true), k);
-            let found = render(&world, &by_paths(4096));
+            let found = render(&world, &by_paths(8192));
             found.assert_mean(&format!("albedo {albedo}, {kind:?}, place {k}"), plate_on_a_table(albedo), 0.01);
         }
     }
@@ -184,11 +184,16 @@ fn of_two_opaque_faces_the_first_in_the_file_is_seen() {
                 }
                 from_above(&mut world);
                 let name = format!("{kinds:?} of {half}, tree {in_a_tree}, place {k}");
-                render(&elsewhere(&world, k), &by_paths(16)).assert_every_pixel(&name, albedos[0], 1e-4);
+                let mean = |world: &World| render(world, &by_paths(64)).mean[0];
+                // Roulette makes noise; the other one's albedo is more than a factor of 3 away.
+                let is_near = |found: f64, albedo: f64| (found / albedo - 1.0).abs() < 0.25;
+                let found = mean(&elsewhere(&world, k));
+                assert!(is_near(found, albedos[0]), "{name}: {found} instead of {}", albedos[0]);
                 // No order was told: polygons before meshes.
                 world.order = Order::default();
                 let first = if kinds == [Kind::Mesh, Kind::Quads] { albedos[1] } else { albedos[0] };
-                render(&world, &by_paths(16)).assert_every_pixel(&name, first, 1e-4);
+                let found = mean(&world);
+                assert!(is_near(found, first), "{name}, by default: {found} instead of {first}");
             }
         }
     }
@@ -327,6 +332,13 @@ fn the_order_of_the_file_changes_no_bit_elsewhere() {
     assert_eq!(world(true), world(false));
 }
 
+/// Whether something in it is noted as too thin.
+fn is_noted(world: &World) -> bool {
+    let frame = Frame::of(world);
+    let found = soundness::examine(world, &frame, &contact::pairs(world, &frame));
+    found.iter().any(|finding| matches!(finding, soundness::Finding::Thin { .. }))
+}
+
 /// A pane in a furnace, with something far away: what it is as thin as, beside the scene.
 #[test]
 fn a_thin_pane_is_left_again() {
@@ -348,11 +360,60 @@ fn a_thin_pane_is_left_again() {
                     );
                     camera(&mut world, at(0.0, -3.0, 0.1), DVec3::ZERO, 0.3);
                     let name = format!("{thickness} in {far} along {way}, {kind:?}");
-                    let warned = assert_sound(&name, &world).iter().any(|finding| finding.case == "thin");
+                    let warned = is_noted(&world);
                     let mean = render(&world, &by_paths(64)).mean[0];
                     assert!(warned || (mean - 1.0).abs() < 2e-3, "{name}: {mean}, and nobody said so");
                 }
             }
         }
+    }
+}
+
+/// What a pane of this transmittance lets through and mirrors, for perpendicular light from both sides.
+fn slab(passes: f64) -> f64 {
+    let r = MIRRORED;
+    let through = (1.0 - r).powi(2) * passes / (1.0 - (r * passes).powi(2));
+    let mirrored = r + r * passes * through;
+    through + mirrored
+}
+
+/// However a thin pane lies: what it absorbs is what its thickness says.
+#[test]
+fn a_thin_tinted_pane_absorbs_by_its_thickness() {
+    for (thickness, far) in [(1e-2, 1e4), (1e-3, 1e3), (3e-3, 2e3)] {
+        for k in 0..4 {
+            let mut world = World { environment: Some([1.0; 3]), ..World::default() };
+            let tinted = Material::Dielectric { ior: 1.5, absorption: [0.5 / thickness; 3] };
+            let (clear, black) = (material(&mut world, tinted), material(&mut world, grey(0.0)));
+            put(&mut world, faces_of_box(at(-1.0, -1.0, 0.0), at(1.0, 1.0, thickness)), KINDS[k as usize % 2], clear);
+            put(&mut world, vec![square(1.0, -far).remove(0)], Kind::Quads, black);
+            camera(&mut world, at(0.02, 0.01, 3.0), at(0.02, 0.01, 0.0), 0.005);
+            let world = elsewhere(&world, k);
+            let whitted = Settings { integrator: Integrator::Whitted, ..settings(2, 2, 16) };
+            let mean = render(&world, &whitted).mean[0];
+            let truth = slab(libm::exp(-0.5));
+            // Its thickness is known to a step of the coordinates.
+            assert!(
+                is_noted(&world) || (mean / truth - 1.0).abs() < 0.12,
+                "{thickness} in {far}, {k}: {mean}, {truth}"
+            );
+        }
+    }
+}
+
+/// A bottle in a furnace: walls of a few steps of the coordinates are left again, or noted.
+#[test]
+fn a_thin_shell_is_left_again() {
+    for steps in [4.0, 8.0, 16.0, 24.0, 32.0, 64.0, 1000.0] {
+        let mut world = World { environment: Some([1.0; 3]), ..World::default() };
+        let clear = material(&mut world, Material::clear(1.5));
+        let hole = material(&mut world, Material::clear(1.0 / 1.5));
+        let gap = steps / f64::from(1u32 << 24);
+        sphere(&mut world, DVec3::ZERO, 1.0, clear, None);
+        sphere(&mut world, DVec3::ZERO, 1.0 - gap, hole, None);
+        camera(&mut world, at(0.3, -4.0, 0.5), DVec3::ZERO, 0.3);
+        let mean = render(&world, &by_paths(64)).mean[0];
+        assert!(is_noted(&world) || (mean - 1.0).abs() < 2e-3, "{steps} steps: {mean}, and nobody said so");
+        assert_eq!(is_noted(&world), steps < 16.0, "{steps} steps");
     }
 }

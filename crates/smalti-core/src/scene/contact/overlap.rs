@@ -16,7 +16,7 @@ const WRITTEN: f64 = 4.0 * f64::EPSILON;
 pub struct Corners {
     points: Vec<DVec3>,
     normal: DVec3,
-    /// What coordinates are rounded to as they were written, in the frame.
+    /// Largest coordinate as it was written, in the frame's unit.
     written: f64,
 }
 
@@ -27,7 +27,7 @@ impl Corners {
         let largest = corners.iter().map(|corner| corner.abs().max_element()).fold(0.0, f64::max);
         let points: Vec<DVec3> = corners.into_iter().map(|corner| frame.point(corner)).collect();
         let normal = if points.is_empty() { DVec3::ZERO } else { newell(&points).normalize_or_zero() };
-        Self { points, normal, written: WRITTEN * largest * frame.scale }
+        Self { points, normal, written: largest * frame.scale }
     }
 }
 
@@ -39,6 +39,8 @@ pub struct Overlap {
     pub size: f64,
     /// Rounding of coordinates across the plane.
     pub step: f64,
+    /// Rounding of coordinates where they were written as f32.
+    pub as_f32: f64,
     /// Whether both normals point to the same side.
     pub same_way: bool,
 }
@@ -61,8 +63,9 @@ pub fn of(a: &Corners, b: &Corners) -> Option<Overlap> {
         .map(height)
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), height| (low.min(height), high.max(height)));
     let largest = common.iter().fold(DVec3::ZERO, |largest, point| largest.max(point.abs()));
-    let step = (STEP * a.normal.abs().dot(largest)).max(a.written).max(b.written);
-    Some(Overlap { heights, size: largest.max_element(), step, same_way: slope > 0.0 })
+    let written = a.written.max(b.written);
+    let step = (STEP * a.normal.abs().dot(largest)).max(WRITTEN * written);
+    Some(Overlap { heights, size: largest.max_element(), step, as_f32: STEP * written, same_way: slope > 0.0 })
 }
 
 fn dominant(normal: DVec3) -> usize {

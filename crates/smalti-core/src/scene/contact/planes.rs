@@ -11,7 +11,8 @@ use crate::scene::world::World;
 /// Planes whose normals differ by more than this are not parallel.
 const PARALLEL: f64 = 1e-5;
 
-/// Planes that cross within this many steps are one: small faces are inclined by the rounding of their corners.
+/// Planes whose distance is not even are one within this many steps: the corners of faces, small ones above all, are
+/// rounded each for itself, in files of f32 by their own size.
 const CROSSING: f64 = 8.0;
 
 /// Width of a drawer: as much as the figures of two planes can differ that are parallel and near.
@@ -80,13 +81,14 @@ fn may_pair(a: &Candidate, b: &Candidate) -> bool {
 
 fn pair(world: &World, frame: &Frame, a: &Candidate, b: &Candidate) -> Option<Pair> {
     let corners = [a, b].map(|face| Corners::new(world, frame, face.origin));
-    let overlap::Overlap { heights: (low, high), size, step, same_way } = overlap::of(&corners[0], &corners[1])?;
+    let overlap::Overlap { heights: (low, high), size, step, as_f32, same_way } =
+        overlap::of(&corners[0], &corners[1])?;
     let most = low.abs().max(high.abs());
-    let cross = low * high <= 0.0 && most <= CROSSING * step;
-    let coincide = cross || most <= ONE_PLACE * step + ROUNDING;
     let even = low * high > 0.0 && most <= 2.0 * low.abs().min(high.abs());
+    let inclined = !even && most <= CROSSING * step.max(as_f32) && most <= NEAR * STEP;
+    let coincide = inclined || most <= ONE_PLACE * step + ROUNDING;
     let near = even && most <= NEAR * STEP * size && (a.clear || b.clear);
-    let gap = if cross { 0.0 } else { (low + high) / 2.0 };
+    let gap = if inclined { 0.0 } else { (low + high) / 2.0 };
     let found = Pair { of: [a.origin, b.origin], gap, step, same_way };
     (coincide || near).then_some(found)
 }

@@ -7,8 +7,14 @@ use crate::mutant::mutant;
 use crate::scene::Scene;
 use crate::scene::world::World;
 
-/// On a sphere points are known to so many steps only; rays that start nearer may be taken for inside or outside.
-const LEAST_OFF_SPHERES: f64 = 6.0;
+/// Part of a gap by which rays leave what is beside it.
+const PART: f64 = 1.0 / 64.0;
+
+/// On a plane points are known to about so many steps.
+const OFF_FACES: f64 = 2.0;
+
+/// On a sphere they are known to so many only; rays that start nearer may be taken for inside or outside.
+const OFF_SPHERES: f64 = 6.0;
 
 /// What touches in a scene.
 pub struct Touching {
@@ -76,13 +82,17 @@ impl Touching {
     }
 }
 
-/// Half of the gap is left to rays that start on either side of it.
+/// Leaves to rays beside a gap a small part of it: what they are absorbed by begins where they start. Never more than half
+/// of it between faces; these are not hit again by what leaves them, wherever it starts.
 fn narrow(scene: &Scene, room: &mut [Vec<f32>; 2], prim: u32, pair: Pair) {
-    let half = pair.gap.abs() / 2.0;
+    let gap = pair.gap.abs();
     let is_sphere = prim as usize >= scene.faces.len();
-    let half = if is_sphere { half.max(LEAST_OFF_SPHERES * pair.step) } else { half };
+    let off = match is_sphere {
+        true => (gap * PART).max(OFF_SPHERES * pair.step),
+        false => (gap * PART).max(OFF_FACES * pair.step).min(gap / 2.0),
+    };
     let side = &mut room[usize::from(pair.gap < 0.0)][prim as usize];
-    *side = side.min(half as f32);
+    *side = side.min(off as f32);
 }
 
 impl Scene {
