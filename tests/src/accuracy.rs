@@ -11,7 +11,7 @@ use smalti_core::geometry::{Ray, offset};
 use smalti_core::lanes::math::{disc_segment, exp_minus, leading_bits, sin_cos_quarter, sin_cos_turn};
 use smalti_core::lanes::{One, V3};
 use smalti_core::light::table::NO_SURFACE;
-use smalti_core::photon::{Photons, Tag};
+use smalti_core::photon::{Photons, Quantity, Tag};
 use smalti_core::sampling::warp;
 use smalti_core::scene::{Scene, World, compile};
 use smalti_core::settings::{Fresnel, Settings};
@@ -501,7 +501,8 @@ fn density(random: &mut Random, count: u32) -> Worst {
             sum +=
                 if at(f64::from(px) - x, f64::from(py) - y, 0.0).length() < radius.into() { flux.into() } else { 0.0 };
         }
-        let found = irradiance((&map_of(&photons), 0, 99), surfaces, &middle, radius)[0];
+        let map = map_of(&photons, surfaces, radius, Quantity::Radiance);
+        let found = irradiance((&map, 0, 99), surfaces, &middle)[0];
         let truth = sum / (PI * f64::from(radius) * f64::from(radius));
         (if truth == 0.0 { found.abs() } else { (found / truth - 1.0).abs() }, [x, y, z])
     })

@@ -11,4 +11,5 @@ pub mod fuzz;
 pub mod leaving;
 pub mod oracle;
 pub mod photons;
+pub mod rooms;
 pub mod statistics;

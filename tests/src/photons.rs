@@ -5,7 +5,9 @@ use rayon::prelude::*;
 use smalti_core::lanes::{One, V3};
 use smalti_core::photon::gather::{Gather, Query};
 use smalti_core::photon::kd_tree::Tree;
+use smalti_core::photon::kernel::{Footprint, Kernels};
 use smalti_core::photon::pass::{Pass, PhotonWorkspace};
+use smalti_core::photon::pilot::{Pilot, Target};
 use smalti_core::photon::{Account, Kind, Map, Photons, Quantity, SUB_MAPS, Surfaces, Traced};
 use smalti_core::render::{Level, Renderer};
 use smalti_core::scene::{Origin, World};
@@ -40,10 +42,16 @@ pub fn trace(renderer: &Renderer, pass: &Pass, count: u32, round: u32) -> Traced
     all
 }
 
-/// A map whose first part holds these photons, and whose others are empty.
-pub fn map_of(photons: &Photons) -> Map {
+/// A map whose first part holds these photons, with kernels that bring `quantity`, all of `radius` (in the frame); its
+/// other parts are empty. Surfaces and rounding of places limit the radius.
+pub fn map_of(photons: &Photons, surfaces: &Surfaces, radius: f32, quantity: Quantity) -> Map {
+    let target = Target { ahead: 1, of_map: 1, wanted: 1.0 };
+    let pilot = Pilot::new(&Photons::default(), surfaces, target, Some(radius));
+    let kernels = Kernels { pilot: &pilot, surfaces, shrink: 1.0, footprint: Footprint::default(), quantity };
+    let mut photons = photons.clone();
+    kernels.spread(One, &mut photons);
     let mut trees = vec![Tree::default(); SUB_MAPS as usize];
-    trees[0] = Tree::new([photons]);
+    trees[0] = Tree::new([&photons]);
     Map::new(Kind::Global, 0, trees, Account::default())
 }
 
@@ -75,36 +83,15 @@ impl Place {
     }
 }
 
-/// Irradiance at a place by one part of a map, from photons within `radius` (in the frame) and with at most
-/// `most_bounces` scattering events before.
-pub fn irradiance(
-    (map, sub_map, most_bounces): (&Map, u32, u32),
-    surfaces: &Surfaces,
-    place: &Place,
-    radius: f32,
-) -> [f64; 3] {
-    let found = Gather { map, surfaces, most_bounces }.irradiance(One, &query(sub_map, place, radius)).irradiance;
-    [found.x, found.y, found.z].map(f64::from)
-}
-
-/// What `quantity` says of the photons there, by area.
-pub fn shown(
-    (map, sub_map, most_bounces): (&Map, u32, u32),
-    surfaces: &Surfaces,
-    (place, radius): (&Place, f32),
-    quantity: Quantity,
-) -> [f64; 3] {
-    let found = Gather { map, surfaces, most_bounces }.shown(One, &query(sub_map, place, radius), quantity);
-    [found.x, found.y, found.z].map(f64::from)
-}
-
-fn query(sub_map: u32, place: &Place, radius: f32) -> Query<One> {
-    Query {
+/// Irradiance at a place by one part of a map, from photons with at most `most_bounces` scattering events before.
+pub fn irradiance((map, sub_map, most_bounces): (&Map, u32, u32), surfaces: &Surfaces, place: &Place) -> [f64; 3] {
+    let query = Query {
         point: V3::splat(One, place.point),
         normal: V3::splat(One, place.normal),
         prim: place.prim,
         asks: true,
         sub_map,
-        radius,
-    }
+    };
+    let found = Gather { map, surfaces, most_bounces }.irradiance(One, &query).irradiance;
+    [found.x, found.y, found.z].map(f64::from)
 }

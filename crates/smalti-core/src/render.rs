@@ -314,16 +314,16 @@ impl Renderer {
                 dispatch!(token, l => direct::run(l, &context, bounce, diffuse, shadows, slots));
             }
             Stage::Caustic => {
-                let Some(context) = self.photons(bounce, maps, maps.caustic.as_ref()) else { return };
+                let Some(context) = self.photons(bounce, maps.caustic.as_ref()) else { return };
                 dispatch!(token, l => gather::caustic(l, &context, bounce, diffuse, asking, slots));
             }
             Stage::Gather => {
-                let Some(context) = self.photons(bounce, maps, maps.global.as_ref()) else { return };
+                let Some(context) = self.photons(bounce, maps.global.as_ref()) else { return };
                 dispatch!(token, l => gather::last(l, &context, diffuse, (asking, first), slots));
             }
             Stage::Show(Show { map, quantity }) => {
                 let layer = if map == Kind::Caustic { &maps.caustic } else { &maps.global };
-                let Some(context) = self.photons(bounce, maps, layer.as_ref()) else { return };
+                let Some(context) = self.photons(bounce, layer.as_ref()) else { return };
                 let what = self.shown(quantity);
                 dispatch!(token, l => gather::shown(l, &context, what, diffuse, slots));
             }
@@ -345,14 +345,14 @@ impl Renderer {
     }
 
     /// How a map is asked after `bounce` scattering events.
-    fn photons<'a>(&'a self, bounce: u32, maps: &'a Maps, layer: Option<&'a Layer>) -> Option<gather::Context<'a>> {
+    fn photons<'a>(&'a self, bounce: u32, layer: Option<&'a Layer>) -> Option<gather::Context<'a>> {
         let photons = self.plan.photons.as_ref()?;
         let Layer { pilot, map } = layer?;
         let most_bounces = self.plan.max_bounces.checked_sub(1 + bounce)?;
         Some(gather::Context {
             gather: Gather { map, surfaces: &photons.surfaces, most_bounces },
             pilot,
-            shrink: maps.shrink,
+            scene: &self.scene,
             reference: photons.reference,
             sampler: self.settings.sampler,
         })

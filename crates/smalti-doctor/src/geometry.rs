@@ -177,7 +177,7 @@ fn case_of(finding: &Unsound) -> &'static str {
         Unsound::Open { .. } => "open",
         Unsound::InsideOut { .. } | Unsound::ShinesInwards { .. } => "turned round",
         Unsound::Thin { .. } => "thin",
-        Unsound::Coarse { .. } => "coarse",
+        Unsound::Coarse { .. } | Unsound::Rough { .. } => "coarse",
     }
 }
 

@@ -26,6 +26,7 @@ use std::path::Path;
 use smalti_core::scene::World;
 
 pub use error::SceneError;
+pub use mesh::{Reading, Watch};
 pub use note::{Note, Severity};
 pub use render_table::RenderTable;
 
@@ -44,15 +45,23 @@ pub struct Loaded {
     pub notes: Vec<Note>,
 }
 
-/// Reads the scene file at `path` and the meshes that it names (relative to its folder).
+/// Reads the scene file at `path` and the meshes that it names (relative to its folder), each file once.
 ///
 /// # Errors
 /// The first mistake in the scene file or in a mesh file, and files that cannot be read.
 pub fn load(path: &Path) -> Result<Loaded, SceneError> {
+    load_watched(path, &|_| Ok(()))
+}
+
+/// [`load`], of whose mesh files `watch` hears before they are read.
+///
+/// # Errors
+/// The same, and what `watch` refuses.
+pub fn load_watched(path: &Path, watch: &Watch) -> Result<Loaded, SceneError> {
     let name = path.display().to_string();
     let text = file::text(path).map_err(|(fault, text)| SceneError::new(&name, text, fault))?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    match document::parse(&text).and_then(|document| world::read(&document, &text, folder)) {
+    match document::parse(&text).and_then(|document| world::read(&document, &text, (folder, watch))) {
         Ok((world, settings, notes)) => Ok(Loaded { scene_hash: hash::of(&world), world, settings, notes }),
         Err(fault) => Err(SceneError::new(&name, text, fault)),
     }

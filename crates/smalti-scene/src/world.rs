@@ -10,6 +10,7 @@ use toml::de::DeTable;
 use crate::document::{Key, Section, key};
 use crate::error::Result;
 use crate::material::Palette;
+use crate::mesh::Watch;
 use crate::note::Note;
 use crate::place::Places;
 use crate::render_table::RenderTable;
@@ -33,12 +34,12 @@ pub fn root<'d>(document: &'d Spanned<DeTable<'d>>) -> Result<Section<'d>> {
     Section::of_entries(document.get_ref(), "the scene file".to_owned(), document.span(), KINDS)
 }
 
-/// The world and the settings that the document of the file `text` describes, and notes; mesh files are relative to
-/// `folder`.
+/// The world and the settings that the document of the file `text` describes, and notes; mesh files are relative to the
+/// folder, and whoever watches hears of them.
 pub fn read<'d>(
     document: &'d Spanned<DeTable<'d>>,
     text: &str,
-    folder: &Path,
+    meshes: (&Path, &Watch),
 ) -> Result<(World, RenderTable, Vec<Note>)> {
     let root = root(document)?;
     let mut notes = Vec::new();
@@ -48,7 +49,7 @@ pub fn read<'d>(
     let mut world = World {
         polygons: surface::polygons(&root, &palette)?,
         spheres: surface::spheres(&root, &palette)?,
-        meshes: mesh::read_all(&root, &palette, folder, &mut notes)?,
+        meshes: mesh::read_all(&root, &palette, meshes, &mut notes)?,
         cameras,
         ..World::default()
     };

@@ -168,7 +168,10 @@ fn inside_out_and_thin_and_coarse_things_are_noted() {
         |z: &str, radius: &str| format!("[[sphere]]\nmaterial = 'white'\ncentre = [0, 0, {z}]\nradius = {radius}\n");
     let loaded = alone(&format!("{}{}", ball("-1e6", "1e6"), ball("0.5", "0.5")));
     let notes = warnings(&loaded);
-    assert!(matches!(&notes[..], [note] if note.contains("the sphere in line 14 is 1.0e0 m across")), "{notes:?}");
+    assert!(
+        matches!(&notes[..], [note] if note.contains("8 of which are the sphere in line 14 (1.0e0 m)")),
+        "{notes:?}"
+    );
     let shell = |radius: &str| {
         alone(&format!("{GLASS}{}{}", ball("0", "1"), ball("0", radius)).replace("'white'\ncentre", "'glass'\ncentre"))
     };

@@ -123,19 +123,21 @@ impl<'a> Course<'a> {
         Some(done.saturating_add((self.left()? / each) as u32))
     }
 
-    /// Samples a pixel that there is time for, at most [`PART`] of all the time, at least 1.
+    /// Samples a pixel that there is time for, at most [`PART`] of all the time, at least 1. One that takes more than that
+    /// part is begun only if it fits as a whole; smaller ones are rounded.
     fn fitting(&self, done: u32) -> Result<u32, Stopped> {
         let Some(left) = self.left() else { return Ok(u32::MAX) };
         // How long a sample takes is not known before the first one.
         let Some(each) = self.seconds_a_sample() else { return Ok(1) };
         let photons = if self.photons && done.is_multiple_of(ROUND) { self.emission.as_secs_f64() } else { 0.0 };
+        let all = self.goal.deadline.map_or(0.0, |deadline| seconds_to(self.start, deadline));
         let fitting = (left - photons) / each;
-        if fitting < 0.5 {
+        let fitting = if each > all * PART { fitting.floor() } else { fitting.round() };
+        if fitting < 1.0 {
             return Err(Stopped::Time);
         }
-        let all = self.goal.deadline.map_or(0.0, |deadline| seconds_to(self.start, deadline));
         let part = (all * PART / each).max(if self.goal.noise.is_some() { f64::from(ROUND) } else { 1.0 });
-        Ok(fitting.round().min(part).max(1.0) as u32)
+        Ok(fitting.min(part) as u32)
     }
 
     /// Seconds that are left; `None` without a deadline.
@@ -200,6 +202,36 @@ mod tests {
         let mut course = Course::new(&goal, MOST_SAMPLES, false, (0, Instant::now()));
         assert_eq!(course.foreseen(), None);
         assert_eq!(ends(&mut course), (vec![1], Stopped::Time));
+    }
+
+    /// The next step of a render of 10 s of which `left` seconds are left, after `samples` samples a pixel that took `each`
+    /// seconds each, and photons that took `emission` seconds a round.
+    fn next_in_time(samples: u32, each: f64, emission: Option<f64>, left: f64) -> Result<Step, Stopped> {
+        let now = Instant::now();
+        let start = now.checked_sub(Duration::from_secs_f64(10.0 - left)).unwrap();
+        let goal = Goal { deadline: Some(start + Duration::from_secs(10)), ..Goal::default() };
+        let mut course = Course::new(&goal, MOST_SAMPLES, emission.is_some(), (0, start));
+        let tiles = Duration::from_secs_f64(f64::from(samples) * each);
+        course.note(Step::Until(samples), tiles, emission.map(Duration::from_secs_f64));
+        course.next(&film(), &[])
+    }
+
+    #[test]
+    fn a_sample_that_takes_long_is_begun_only_if_it_fits() {
+        assert_eq!(next_in_time(1, 9.9, None, 0.1), Err(Stopped::Time));
+        assert_eq!(next_in_time(1, 6.0, None, 4.0), Err(Stopped::Time), "two thirds of one are none");
+        assert_eq!(next_in_time(1, 3.0, None, 7.0), Ok(Step::Until(2)));
+        assert_eq!(next_in_time(2, 3.0, None, 4.0), Ok(Step::Until(3)), "one and a third are one");
+        assert_eq!(next_in_time(100, 0.099, None, 0.098), Ok(Step::Until(101)), "what is short is rounded");
+        assert_eq!(next_in_time(100, 0.1, None, 0.01), Err(Stopped::Time));
+    }
+
+    #[test]
+    fn photons_of_a_round_take_their_part_of_the_time() {
+        assert_eq!(next_in_time(16, 0.1, Some(5.0), 4.0), Err(Stopped::Time));
+        assert!(matches!(next_in_time(16, 0.1, Some(2.0), 6.0), Ok(Step::Until(17..))));
+        // Within a round there are photons already.
+        assert!(matches!(next_in_time(15, 0.1, Some(5.0), 4.0), Ok(Step::Until(16))));
     }
 
     #[test]

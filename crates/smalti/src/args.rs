@@ -8,8 +8,7 @@ use smalti_core::settings::{MOST_PHOTONS, MOST_SHADOW_RAYS, Rect};
 
 use crate::names::{ColourArg, FresnelArg, IntegratorArg, MapArg, QualityArg, SamplerArg, SimdArg, SwitchArg};
 use crate::parse::{
-    Size, parse_crop, parse_finite, parse_length, parse_seconds, parse_share, parse_size, parse_threads,
-    parse_threshold,
+    Size, parse_crop, parse_finite, parse_length, parse_share, parse_size, parse_threads, parse_threshold,
 };
 use crate::study::args::StudyArgs;
 
@@ -124,8 +123,9 @@ Examples:
 /// When a render stops, other than by its samples.
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub struct BudgetArgs {
-    /// Use this time, from the start of the process to its end, for as many samples as it gives; --spp is the most then
-    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, allow_negative_numbers = true)]
+    /// Use this time, from the start of the process to its end, for as many samples as it gives: 90, 500ms, 1m30s;
+    /// one sample a pixel is the least, --spp the most
+    #[arg(long, value_name = "TIME", value_parser = crate::time::parse, allow_negative_numbers = true)]
     pub time: Option<f64>,
     /// Stop when the relative error is at most this, with 95 % confidence: 1% or 0.01; --spp is the most samples then
     #[arg(long, value_name = "SHARE", value_parser = parse_share, allow_negative_numbers = true)]

@@ -24,8 +24,10 @@ pub fn describe(summary: &Summary) -> String {
         ("again", summary.reproduce.clone().unwrap_or_default()),
     ];
     let mut lines: Vec<(&str, String)> = rows.into_iter().filter(|(_, text)| !text.is_empty()).collect();
-    let biases = lines.iter().position(|(name, _)| *name == "error").map_or(0, |error| error + 1);
-    lines.splice(biases..biases, summary.biases.iter().map(|bias| ("bias", bias.clone())));
+    let after_error = lines.iter().position(|(name, _)| *name == "error").map_or(0, |error| error + 1);
+    let biases = summary.biases.iter().map(|bias| ("bias", bias.clone()));
+    let missed = summary.shortfalls.iter().map(|shortfall| ("missed", shortfall.clone()));
+    lines.splice(after_error..after_error, biases.chain(missed));
     let lines: Vec<Vec<String>> = lines.into_iter().map(|(name, text)| vec![heading(name), text]).collect();
     format!("{}\n{}", style(summary.outputs.join(" ")).bold(), table(&[Align::Left, Align::Left], &lines))
 }

@@ -1,9 +1,12 @@
-//! Ctrl-C and its relatives: once asks for the end and keeps the work, twice leaves at once.
+//! Ctrl-C and its relatives: once ends the work and keeps it, twice leaves at once, as does once while there is no work to
+//! keep yet.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicI32, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
 
 use smalti_scheduler::Cancel;
+
+use crate::print::Messages;
 
 /// Listens for SIGINT, SIGTERM and SIGHUP.
 #[derive(Clone, Debug, Default)]
@@ -12,12 +15,40 @@ pub struct Interrupt {
     pub cancel: Cancel,
     /// The first signal; 0: none yet.
     first: Arc<AtomicI32>,
+    /// Whether there is work to keep.
+    keeps: Arc<AtomicBool>,
+}
+
+/// What is done at signals by which the process leaves at once.
+#[derive(Clone, Copy, Debug)]
+pub struct Farewell {
+    /// Puts the terminal in order.
+    pub restore: fn(),
+    /// Where it is told that nothing is kept.
+    pub messages: Messages,
+}
+
+impl Farewell {
+    #[cfg(unix)]
+    fn leave(self, signal: i32, keeps: bool) -> ! {
+        (self.restore)();
+        if !keeps {
+            self.messages
+                .warning(&format!("interrupted by {} before the first sample: nothing is written", name(signal)));
+        }
+        std::process::exit(128 + signal)
+    }
 }
 
 impl Interrupt {
     /// The signal that asked for the end.
     pub fn signal(&self) -> Option<i32> {
         Some(self.first.load(Ordering::Relaxed)).filter(|&signal| signal != 0)
+    }
+
+    /// Notes that from now on there is work to keep: before, the process leaves at the first signal.
+    pub fn keep(&self) {
+        self.keeps.store(true, Ordering::Relaxed);
     }
 
     /// Takes note of `signal`; true if it is not the first.
@@ -28,9 +59,9 @@ impl Interrupt {
     }
 }
 
-/// Starts to listen, but not to signals that whoever started us wants ignored (`nohup`). Before the process leaves at a second signal it calls `restore`, which puts the terminal in order.
+/// Starts to listen, but not to signals that whoever started us wants ignored (`nohup`).
 #[cfg(unix)]
-pub fn listen(restore: fn()) -> std::io::Result<Interrupt> {
+pub fn listen(farewell: Farewell) -> std::io::Result<Interrupt> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
     let interrupt = Interrupt::default();
@@ -40,9 +71,9 @@ pub fn listen(restore: fn()) -> std::io::Result<Interrupt> {
     let shared = interrupt.clone();
     let forever = move || {
         for signal in signals.forever() {
-            if shared.receive(signal) {
-                restore();
-                std::process::exit(128 + signal);
+            let keeps = shared.keeps.load(Ordering::Relaxed);
+            if shared.receive(signal) || !keeps {
+                farewell.leave(signal, keeps);
             }
         }
     };
@@ -60,7 +91,7 @@ fn ignores(status: &str, signal: i32) -> bool {
 
 /// Where there are no such signals Ctrl-C ends the process at once.
 #[cfg(not(unix))]
-pub fn listen(_restore: fn()) -> std::io::Result<Interrupt> {
+pub fn listen(_: Farewell) -> std::io::Result<Interrupt> {
     Ok(Interrupt::default())
 }
 

@@ -25,6 +25,7 @@ mod study;
 mod study_report;
 mod summary;
 mod table;
+mod time;
 
 use std::process::ExitCode;
 use std::time::Instant;

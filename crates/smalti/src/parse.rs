@@ -66,14 +66,6 @@ pub fn parse_length(text: &str) -> Result<f64, String> {
     parse_finite(text).ok().filter(|number| *number > 0.0).ok_or("expected a length greater than 0".into())
 }
 
-/// Reads a time above 0 in seconds, `10` or `10s`.
-pub fn parse_seconds(text: &str) -> Result<f64, String> {
-    let number = parse_finite(text.strip_suffix('s').unwrap_or(text)).ok();
-    number
-        .filter(|seconds| *seconds > 0.0)
-        .ok_or("expected a time in seconds greater than 0, for example 0.5 or 10s".into())
-}
-
 /// Reads a share above 0: `3%` or `0.03`.
 pub fn parse_share(text: &str) -> Result<f64, String> {
     let number = match text.strip_suffix('%') {
@@ -131,10 +123,9 @@ mod tests {
             assert!(parse_finite(wrong).is_err() && parse_threshold(wrong).is_err(), "{wrong}");
         }
         assert!(parse_threshold("-1").is_err());
-        assert_eq!((parse_seconds("0.5"), parse_seconds("10s")), (Ok(0.5), Ok(10.0)));
         assert_eq!((parse_share("3%"), parse_share("0.25")), (Ok(0.03), Ok(0.25)));
         for wrong in ["0", "-1", "s", "%", ""] {
-            assert!(parse_seconds(wrong).is_err() && parse_share(wrong).is_err(), "{wrong}");
+            assert!(parse_share(wrong).is_err(), "{wrong}");
         }
     }
 }

@@ -66,8 +66,11 @@ pub struct Summary {
     pub quality: Option<QualityRecord>,
     /// `spp`, `time`, `error` or `interrupt`.
     pub stopped_by: &'static str,
-    /// Whether it came to what was asked for: the error, the time, or else the samples.
+    /// Whether it came to what was asked for: the error, the time, or else the samples; a time that was exceeded is not
+    /// reached.
     pub target_reached: bool,
+    /// What it fell short of and why, in words; empty where it came to all, and where it was interrupted.
+    pub shortfalls: Vec<String>,
     pub outputs: Vec<String>,
     /// Null where samples differ between tiles: no command gives that image.
     pub reproduce: Option<String>,
@@ -163,6 +166,7 @@ pub fn summary(job: &Job, work: Work, outcome: &Outcome, developed: &Developed) 
         quality: None,
         stopped_by: budget::name(outcome.stopped),
         target_reached: !outcome.interrupted,
+        shortfalls: Vec::new(),
         outputs: Vec::new(),
         reproduce: repeatable(job, outcome, (least, most)).then(|| reproduce(job, outcome.mean_samples)),
     }

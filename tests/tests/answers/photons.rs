@@ -1,6 +1,7 @@
 //! Photon maps, where the answer is known.
 
 use glam::DVec3;
+use smalti_core::photon::Quantity;
 use smalti_core::photon::pass::Pass;
 use smalti_core::photon::{Aim, Kind};
 use smalti_core::scene::world::Material;
@@ -90,7 +91,8 @@ fn photons_bring_lamberts_irradiance() {
         let (rounds, mut sum, mut squares) = (16u32, 0.0, 0.0);
         for round in 0..rounds {
             let traced = trace(&renderer, &pass, 1 << 17, round);
-            let [r, ..] = irradiance((&map_of(&traced.photons), 0, 0), &photons.surfaces, &place, radius);
+            let map = map_of(&traced.photons, &photons.surfaces, radius, Quantity::Radiance);
+            let [r, ..] = irradiance((&map, 0, 0), &photons.surfaces, &place);
             sum += r;
             squares += r * r;
         }

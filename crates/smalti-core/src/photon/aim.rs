@@ -16,6 +16,9 @@ use crate::sampling::{discrete, warp};
 /// Most targets; what is nearest to each other is united until they are so few.
 const MOST_TARGETS: usize = 16;
 
+/// The part of the photons that goes to all targets alike, whatever flux they meet.
+const FAIR: f64 = 0.25;
+
 /// Points of a light from where its targets are looked at, along each side.
 const LOOKS: u32 = 4;
 
@@ -59,7 +62,7 @@ impl Aim {
         let weight = &weight;
         let weights: Vec<f64> =
             rows.clone().flat_map(|row| targets.iter().map(move |target| weight(row, target))).collect();
-        let (cumulative, shares) = discrete::shares(&weights);
+        let (cumulative, shares) = discrete::shares(&defended(&weights, targets.len()));
         let numbers = 0..targets.len();
         let pairs = rows.clone().flat_map(|row| numbers.clone().map(move |target| [row, target]));
         Self {
@@ -136,11 +139,25 @@ impl Aim {
     }
 }
 
+/// The weights of pairs, row by row, such that each of the `targets` that light reaches has at least its part of
+/// [`FAIR`]: by flux alone a small caster would meet no photon, and yet its caustic may be all that the camera sees.
+fn defended(weights: &[f64], targets: usize) -> Vec<f64> {
+    let by_target: Vec<f64> = (0..targets).map(|target| weights.iter().skip(target).step_by(targets).sum()).collect();
+    let all: f64 = by_target.iter().sum();
+    let reached = by_target.iter().filter(|flux| **flux > 0.0).count() as f64;
+    let fair = |(number, weight): (usize, &f64)| match by_target[number % targets] {
+        flux if flux > 0.0 => (1.0 - FAIR) * weight + FAIR * (all / reached) * (weight / flux),
+        _ => 0.0,
+    };
+    weights.iter().enumerate().map(fair).collect()
+}
+
 /// A target as seen from a point.
 struct Seen<L: Lanes> {
     axis: V3<L>,
     distance: L::F,
     opening: L::F,
+    squared_radius: L::F,
     /// Whether the point is inside.
     inside: L::M,
 }
@@ -152,7 +169,7 @@ impl<L: Lanes> Seen<L> {
         let axis = V3::new(x, y, z) - from;
         let (squared, r2) = (axis.dot(l, axis), radius * radius);
         let opening = warp::sphere_opening(l, r2, squared);
-        Self { axis, distance: l.sqrt(squared), opening, inside: l.le(squared, r2) }
+        Self { axis, distance: l.sqrt(squared), opening, squared_radius: r2, inside: l.le(squared, r2) }
     }
 
     /// A direction uniform in its cone.
@@ -162,9 +179,12 @@ impl<L: Lanes> Seen<L> {
         warp::about(l, self.axis.scale(l.f(1.0) / self.distance), local).normalised(l)
     }
 
+    /// Lanes whose unit `direction` lies in the cone: by how near it passes the centre, as 1 less the cosine of a narrow
+    /// cone is lost beside 1.
     #[inline(always)]
     fn meets(&self, l: L, direction: V3<L>) -> L::M {
-        l.le(self.distance * (l.f(1.0) - self.opening), self.axis.dot(l, direction))
+        let beside = self.axis.cross(l, direction);
+        l.lt(l.f(0.0), self.axis.dot(l, direction)) & l.le(beside.dot(l, beside), self.squared_radius)
     }
 }
 
@@ -226,7 +246,8 @@ fn middle(step: u32) -> f64 {
     (f64::from(step) + 0.5) / f64::from(LOOKS)
 }
 
-/// At most [`MOST_TARGETS`] spheres around all of these: the two whose union is smallest are united first.
+/// At most [`MOST_TARGETS`] spheres around all of these: the two whose union is least coarse for the smaller of them are
+/// united first.
 fn united(spheres: &[[f32; 4]]) -> Vec<[f32; 4]> {
     let mut targets = spheres.to_vec();
     // Beyond this many, in the order in which they come: neighbours in a scene file are mostly neighbours in space.
@@ -235,9 +256,12 @@ fn united(spheres: &[[f32; 4]]) -> Vec<[f32; 4]> {
     }
     while targets.len() > MOST_TARGETS {
         let pairs = (0..targets.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
-        let (a, b) = pairs
-            .min_by(|p, q| union(targets[p.0], targets[p.1])[3].total_cmp(&union(targets[q.0], targets[q.1])[3]))
-            .expect("several");
+        // A small caster that is united with a large one would hardly be met.
+        let coarseness = |(a, b): &(usize, usize)| {
+            let (a, b) = (targets[*a], targets[*b]);
+            union(a, b)[3] / a[3].min(b[3])
+        };
+        let (a, b) = pairs.min_by(|p, q| coarseness(p).total_cmp(&coarseness(q))).expect("several");
         targets[a] = union(targets[a], targets[b]);
         targets.remove(b);
     }

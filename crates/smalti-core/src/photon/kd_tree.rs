@@ -2,9 +2,10 @@
 //! as deep as the number of photons demands, whatever their places.
 //!
 //! Nodes count from 1, and node k has the children 2k and 2k + 1. With m blocks the nodes below m split, and from m on
-//! they are blocks; all are full but one. A node splits the photons across the longest side of its box; of equal coordinates
-//! the photon's number decides, so photons that share one coordinate, or all three, are no special case, and the tree
-//! is a function of the photons.
+//! they are blocks; all are full but one. A node splits the photons across the longest side of their box; of equal
+//! coordinates the photon's number decides, so photons that share one coordinate, or all three, are no special case, and
+//! the tree is a function of the photons. Each node also bounds how far the kernels of the photons on both of its sides
+//! reach across the split: a point descends only to photons that may count there.
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -15,11 +16,13 @@ use crate::lanes::{Lanes, V3};
 /// Photons of a leaf: as many as the widest level looks at together.
 pub const BLOCK: usize = 16;
 
-/// Where a node splits: the coordinate, and the axis (bits).
-pub type Split = [f32; 2];
+/// Where a node splits: the coordinate; how far up the photons on its left reach, and how far down those on its right;
+/// and the axis (bits).
+pub type Split = [f32; 4];
 
-/// The photons of a leaf, coordinate by coordinate, and their tags (bits). Beyond the last photon everything is infinite.
-pub type Block = [[f32; BLOCK]; 4];
+/// The photons of a leaf: three coordinates, tags (bits), and the radii of their [`kernel`](super::kernel)s. Beyond the last
+/// photon coordinates are infinite.
+pub type Block = [[f32; BLOCK]; 5];
 
 /// A tree.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -40,13 +43,26 @@ struct Item {
     place: [u32; 3],
     /// Its part (upper half), and which of the part it is.
     number: u32,
+    /// The radius of its kernel.
+    reach: f32,
 }
 
 /// Photons of one part at most.
 const PART: usize = 1 << 16;
 
-/// Places and fluxes of some photons of a batch.
-type Part<'a> = (&'a [[f32; 4]], &'a [[f32; 4]]);
+/// Some photons of a batch.
+struct Part<'a> {
+    places: &'a [[f32; 4]],
+    flux: &'a [[f32; 4]],
+    /// None where photons have no kernels.
+    radii: &'a [f32],
+}
+
+/// A leaf without photons.
+const EMPTY: Block = {
+    let nowhere = [f32::INFINITY; BLOCK];
+    [nowhere, nowhere, nowhere, nowhere, [0.0; BLOCK]]
+};
 
 /// Subtrees of more leaves than this are worth a task of their own.
 const TASK: usize = 256;
@@ -54,21 +70,19 @@ const TASK: usize = 256;
 impl Tree {
     /// Orders the photons of some batches, on the threads of the current pool.
     pub fn new<'a>(batches: impl IntoIterator<Item = &'a Photons>) -> Self {
-        let part = |photons: &'a Photons| photons.places.chunks(PART).zip(photons.flux.chunks(PART));
-        let parts: Vec<Part<'a>> = batches.into_iter().flat_map(part).collect();
+        let parts: Vec<Part<'a>> = batches.into_iter().flat_map(parts_of).collect();
         assert!(parts.len() <= PART, "photons have numbers of 32 bits");
         let mut items = items(&parts);
         let count = items.len().div_ceil(BLOCK);
         if count == 0 {
             return Self::default();
         }
-        let mut splits = vec![[0.0; 2]; count - 1];
-        let bounds = bounds(&items);
-        divide(&mut items, &mut splits, count, bounds);
+        let mut splits = vec![[0.0; 4]; count - 1];
+        divide(&mut items, &mut splits, count);
         items.par_chunks_mut(BLOCK).with_min_len(TASK).for_each(|leaf| leaf.sort_unstable_by_key(|item| item.number));
         let mut tree = Self {
             splits: heap(&splits, count),
-            blocks: vec![[[f32::INFINITY; BLOCK]; 4]; count],
+            blocks: vec![EMPTY; count],
             flux: vec![[0.0; 4]; count * BLOCK],
             len: items.len(),
         };
@@ -83,19 +97,24 @@ impl Tree {
     /// Place, tag (bits) and flux of a photon by its number; `None` beyond the last one of a block.
     pub fn photon(&self, number: usize) -> Option<([f32; 4], [f32; 4])> {
         let (block, lane) = (&self.blocks[number / BLOCK], number % BLOCK);
-        let place = block.map(|column| column[lane]);
+        let place = [0, 1, 2, 3].map(|column: usize| block[column][lane]);
         place[0].is_finite().then(|| (place, self.flux[number]))
     }
 
-    /// The child of each node on the point's side of its split, and the point's distance to the split.
+    /// Lanes whose point is reached by kernels on the left of their node's split, and on its right.
     #[inline(always)]
-    pub fn child<L: Lanes>(&self, l: L, node: L::U, point: V3<L>) -> (L::U, L::F) {
-        let [split, axis] = l.gather_record(&self.splits, l.add_u(node, l.u(u32::MAX)));
-        let axis = l.bits(axis);
-        let y_or_z = l.select(l.eq_u(axis, l.u(1)), point.y, point.z);
-        let along = split - l.select(l.eq_u(axis, l.u(0)), point.x, y_or_z);
+    pub fn reached<L: Lanes>(&self, l: L, node: L::U, point: V3<L>) -> (L::M, L::M) {
+        let [_, left, right, axis] = l.gather_record(&self.splits, l.add_u(node, l.u(u32::MAX)));
+        let place = along(l, l.bits(axis), point);
+        (l.lt(place, left), l.lt(right, place))
+    }
+
+    /// The child of each node on the point's side of its split.
+    #[inline(always)]
+    fn child<L: Lanes>(&self, l: L, node: L::U, point: V3<L>) -> L::U {
+        let [split, _, _, axis] = l.gather_record(&self.splits, l.add_u(node, l.u(u32::MAX)));
         let first = l.shl::<1>(node);
-        (l.select_u(l.lt(along, l.f(0.0)), l.add_u(first, l.u(1)), first), along)
+        l.select_u(l.lt(split, along(l, l.bits(axis), point)), l.add_u(first, l.u(1)), first)
     }
 
     /// The leaf of each point.
@@ -108,7 +127,7 @@ impl Tree {
             if !l.any(down) {
                 break;
             }
-            let child = self.child(l, l.select_u(down, node, l.u(1)), point).0;
+            let child = self.child(l, l.select_u(down, node, l.u(1)), point);
             node = l.select_u(down, child, node);
         }
         l.add_u(node, l.add_u(!leaves, l.u(1)))
@@ -124,21 +143,14 @@ impl Tree {
             along().fold(f32::NEG_INFINITY, f32::max) - along().fold(f32::INFINITY, f32::min)
         };
         let [x, y, z] = [extent(0), extent(1), extent(2)];
-        (places.len(), flux, ((x * y) * (x * y) + (y * z) * (y * z) + (z * x) * (z * x)).sqrt())
-    }
-
-    /// The mean of the photons' places in a leaf.
-    pub fn middle_of(&self, leaf: usize) -> [f32; 3] {
-        let photons: Vec<[f32; 4]> = (leaf * BLOCK..(leaf + 1) * BLOCK)
-            .filter_map(|number| self.photon(number))
-            .map(|(place, _)| place)
-            .collect();
-        [0, 1, 2].map(|k: usize| photons.iter().map(|place| place[k]).sum::<f32>() / photons.len() as f32)
+        let area = ((x * y) * (x * y) + (y * z) * (y * z) + (z * x) * (z * x)).sqrt();
+        // Photons along a line lie on an area too.
+        (places.len(), flux, area.max(x.max(y).max(z) * x.max(y).max(z) / BLOCK as f32))
     }
 
     /// Whether it is a tree of photons on the primitives below `prims`: what walks through it goes nowhere else.
     pub fn is_sound(&self, prims: u32) -> bool {
-        let axes = self.splits.iter().all(|[_, axis]| axis.to_bits() < 3);
+        let axes = self.splits.iter().all(|[_, _, _, axis]| axis.to_bits() < 3);
         let tags = self.blocks.iter().flat_map(|block| block[3]).filter(|tag| tag.is_finite());
         let tags = tags.map(|tag| Tag(tag.to_bits())).all(|tag| tag.prim() < prims);
         let counts = self.flux.len() == self.blocks.len() * BLOCK && self.len <= self.flux.len();
@@ -165,33 +177,29 @@ fn place_of_leaf(leaf: usize, count: usize) -> usize {
 }
 
 /// Orders items by the leaves, of which there are so many, from left to right. The splits are those of the left subtree
-/// behind that of its root, and those of the right one behind them.
-fn divide(items: &mut [Item], splits: &mut [Split], leaves: usize, bounds: Bounds) {
-    let Some((own, below)) = splits.split_first_mut() else { return };
-    let axis = widest(bounds);
+/// behind that of its root, and those of the right one behind them. Returns the box that their kernels reach.
+///
+/// A node splits the longest side of the box of its photons, not of what splits above it left: where photons of a floor
+/// share a height, splits across it part nothing.
+fn divide(items: &mut [Item], splits: &mut [Split], leaves: usize) -> Bounds {
+    let Some((own, below)) = splits.split_first_mut() else { return reached(items) };
+    let axis = widest(bounds(items));
     let left = left_leaves(leaves);
     let key = |item: &Item| u64::from(item.place[axis]) << 32 | u64::from(item.number);
     let (_, middle, _) = items.select_nth_unstable_by_key(left * BLOCK, key);
     let split = unordered(middle.place[axis]);
-    *own = [split, f32::from_bits(axis as u32)];
-    let (mut low, mut high) = (bounds, bounds);
-    low[1][axis] = split;
-    high[0][axis] = split;
     let (of_left, of_right) = items.split_at_mut(left * BLOCK);
     let (splits_left, splits_right) = below.split_at_mut(left - 1);
-    let mut go_left = || divide(of_left, splits_left, left, low);
-    let mut go_right = || divide(of_right, splits_right, leaves - left, high);
-    if leaves > TASK {
-        rayon::join(go_left, go_right);
-    } else {
-        go_left();
-        go_right();
-    }
+    let mut go_left = || divide(of_left, splits_left, left);
+    let mut go_right = || divide(of_right, splits_right, leaves - left);
+    let (a, b) = if leaves > TASK { rayon::join(go_left, go_right) } else { (go_left(), go_right()) };
+    *own = [split, a[1][axis], b[0][axis], f32::from_bits(axis as u32)];
+    around(a, b)
 }
 
 /// The splits of a tree with so many leaves in the order of its nodes, from those in the order of [`divide`].
 fn heap(splits: &[Split], leaves: usize) -> Vec<Split> {
-    let mut ordered = vec![[0.0; 2]; splits.len()];
+    let mut ordered = vec![[0.0; 4]; splits.len()];
     let mut waiting = vec![(1, splits, leaves)];
     while let Some((node, splits, leaves)) = waiting.pop() {
         let Some((own, below)) = splits.split_first() else { continue };
@@ -203,13 +211,26 @@ fn heap(splits: &[Split], leaves: usize) -> Vec<Split> {
     ordered
 }
 
+/// The photons of a batch in parts.
+fn parts_of(photons: &Photons) -> impl Iterator<Item = Part<'_>> {
+    (0..photons.len()).step_by(PART).map(|first| {
+        let range = first..photons.len().min(first + PART);
+        let radii = photons.radii.get(range.clone()).unwrap_or_default();
+        Part { places: &photons.places[range.clone()], flux: &photons.flux[range], radii }
+    })
+}
+
 /// The photons of all parts.
 fn items(parts: &[Part<'_>]) -> Vec<Item> {
-    let mut items = Vec::with_capacity(parts.iter().map(|(places, _)| places.len()).sum());
-    for (part, (places, _)) in (0u32..).zip(parts) {
-        let item =
-            |(at, &[x, y, z, _]): (u32, &[f32; 4])| Item { place: [x, y, z].map(ordered), number: part << 16 | at };
-        items.extend((0..).zip(*places).map(item));
+    let mut items = Vec::with_capacity(parts.iter().map(|part| part.places.len()).sum());
+    for (number, part) in (0u32..).zip(parts) {
+        let reach = |at: u32| part.radii.get(at as usize).copied().unwrap_or(0.0);
+        let item = |(at, &[x, y, z, _]): (u32, &[f32; 4])| Item {
+            place: [x, y, z].map(ordered),
+            number: number << 16 | at,
+            reach: reach(at),
+        };
+        items.extend((0..).zip(part.places).map(item));
     }
     items
 }
@@ -217,10 +238,10 @@ fn items(parts: &[Part<'_>]) -> Vec<Item> {
 /// Puts photons into a leaf.
 fn fill((block, fluxes): (&mut Block, &mut [[f32; 4]]), items: &[Item], parts: &[Part<'_>]) {
     for (lane, item) in items.iter().enumerate() {
-        let (part, at) = (item.number >> 16, item.number as usize % PART);
-        let (places, flux) = parts[part as usize];
-        (0..4).for_each(|k| block[k][lane] = places[at][k]);
-        fluxes[lane] = flux[at];
+        let (part, at) = (&parts[(item.number >> 16) as usize], item.number as usize % PART);
+        (0..4).for_each(|k| block[k][lane] = part.places[at][k]);
+        block[4][lane] = part.radii.get(at).copied().unwrap_or(0.0);
+        fluxes[lane] = part.flux[at];
     }
 }
 
@@ -240,11 +261,32 @@ type Bounds = [[f32; 3]; 2];
 
 /// The box of some photons, at least one.
 fn bounds(items: &[Item]) -> Bounds {
-    let around = |[low, high]: [[u32; 3]; 2], place: [u32; 3]| {
+    let wider = |[low, high]: [[u32; 3]; 2], place: [u32; 3]| {
         [[0, 1, 2].map(|k: usize| low[k].min(place[k])), [0, 1, 2].map(|k: usize| high[k].max(place[k]))]
     };
-    let corners = items.iter().fold([items[0].place; 2], |so_far, item| around(so_far, item.place));
+    let corners = items.iter().fold([items[0].place; 2], |so_far, item| wider(so_far, item.place));
     corners.map(|corner| corner.map(unordered))
+}
+
+/// The box that the kernels of some photons reach, at least one.
+fn reached(items: &[Item]) -> Bounds {
+    let of = |item: &Item| {
+        let place = item.place.map(unordered);
+        [place.map(|x| (x - item.reach).next_down()), place.map(|x| (x + item.reach).next_up())]
+    };
+    items[1..].iter().map(of).fold(of(&items[0]), around)
+}
+
+/// The box about two boxes.
+fn around([a, b]: Bounds, [c, d]: Bounds) -> Bounds {
+    [[0, 1, 2].map(|k: usize| a[k].min(c[k])), [0, 1, 2].map(|k: usize| b[k].max(d[k]))]
+}
+
+/// A point's coordinate along an axis.
+#[inline(always)]
+pub fn along<L: Lanes>(l: L, axis: L::U, point: V3<L>) -> L::F {
+    let y_or_z = l.select(l.eq_u(axis, l.u(1)), point.y, point.z);
+    l.select(l.eq_u(axis, l.u(0)), point.x, y_or_z)
 }
 
 /// The longest side of a box; the first of equals.

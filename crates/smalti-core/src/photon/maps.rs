@@ -10,8 +10,11 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::kd_tree::Tree;
+use super::kernel::{Footprint, Kernels};
 use super::pass::{Pass, PhotonWorkspace, Traced};
-use super::{Account, Batch, Map, Pilot, SUB_MAPS, Visibility, pilot};
+use super::{Account, Batch, Map, Photons, Pilot, SUB_MAPS, Visibility, pilot};
+use crate::lanes::dispatch;
+use crate::plan;
 use crate::render::Renderer;
 
 /// How fast the radius shrinks: of the rounds' mean, variance falls as n^−α and squared bias as n^(2α−2).
@@ -135,8 +138,9 @@ impl Renderer {
         let Some(photons) = &self.plan().photons else { return Maps::default() };
         let layer = |pass: &Option<Pass>, pilot: Option<Arc<Pilot>>| {
             let pass = pass.as_ref()?;
-            let pilot = pilot.unwrap_or_else(|| Arc::new(self.pilot(pass, photons.radius, progress)));
-            Some(Layer { pilot, map: self.map(pass, round, progress) })
+            let pilot = pilot.unwrap_or_else(|| Arc::new(self.pilot(pass, photons, progress)));
+            let map = self.map(pass, round, &pilot, progress);
+            Some(Layer { pilot, map })
         };
         let (caustic, global) = (layer(&photons.caustic, pilots.caustic), layer(&photons.global, pilots.global));
         let visibility = photons.shadow.as_ref().map(|pass| match pilots.visibility {
@@ -154,24 +158,37 @@ impl Renderer {
         photons.caustic.iter().chain(&photons.global).map(of).sum::<u64>() + shadow
     }
 
-    fn pilot(&self, pass: &Pass, radius: Option<f32>, progress: &AtomicU64) -> Pilot {
+    fn pilot(&self, pass: &Pass, plan: &plan::Photons, progress: &AtomicU64) -> Pilot {
+        let (surfaces, radius) = (&plan.surfaces, plan.radius);
         let ahead = Pass { photons: pilot::PHOTONS, ..pass.clone() };
-        let (tree, _) = collected(&self.traced(&ahead, ahead.batches(AHEAD), progress));
-        let pilot = Pilot::new(tree, (pilot::PHOTONS, pass.of_sub_map()), radius);
-        if self.plan().shows() && radius.is_none() { pilot.gradual((pilot::PHOTONS, pass.photons)) } else { pilot }
+        let mut photons = Photons::default();
+        for traced in self.traced(&ahead, ahead.batches(AHEAD), None, progress) {
+            photons.places.extend(traced.photons.places);
+            photons.flux.extend(traced.photons.flux);
+        }
+        let (of_map, wanted) =
+            if self.plan().shows() { (pass.photons, pilot::SEEN) } else { (pass.of_sub_map(), pilot::WANTED) };
+        Pilot::new(&photons, surfaces, pilot::Target { ahead: pilot::PHOTONS, of_map, wanted }, radius)
     }
 
     fn visibility(&self, pass: &Pass, progress: &AtomicU64) -> Visibility {
-        Visibility::new(collected(&self.traced(pass, pass.batches(AHEAD), progress)).0)
+        Visibility::new(collected(&self.traced(pass, pass.batches(AHEAD), None, progress)).0)
     }
 
     /// Trees are built as workers become free, so that little more is held than the trees.
-    fn map(&self, pass: &Pass, round: u32, progress: &AtomicU64) -> Map {
+    fn map(&self, pass: &Pass, round: u32, pilot: &Pilot, progress: &AtomicU64) -> Map {
+        let surfaces = self.plan().photons.as_ref().map(|photons| &photons.surfaces);
+        let quantity = self.plan().quantity();
+        let footprint = match self.settings().radius {
+            Some(_) => Footprint::default(),
+            None => Footprint::new(&self.scene().views[self.settings().camera], self.settings().height),
+        };
+        let kernels = surfaces.map(|surfaces| Kernels { pilot, surfaces, shrink: shrink(round), footprint, quantity });
         let trees = self.plan().trees(self.settings());
         let sub_maps = |tree: u32| tree * SUB_MAPS / trees..(tree + 1) * SUB_MAPS / trees;
         let tree = |number: u32| {
             let batches = sub_maps(number).flat_map(|sub_map| pass.sub_map(round, sub_map)).collect();
-            collected(&self.traced(pass, batches, progress))
+            collected(&self.traced(pass, batches, kernels.as_ref(), progress))
         };
         let (built, accounts): (Vec<Tree>, Vec<Account>) = (0..trees).into_par_iter().map(tree).unzip();
         let mut account = Account::default();
@@ -179,13 +196,22 @@ impl Renderer {
         Map::new(pass.kind, round, built, account)
     }
 
-    /// The batches, traced in parallel, in their order.
-    fn traced(&self, pass: &Pass, batches: Vec<Batch>, progress: &AtomicU64) -> Vec<Traced> {
+    /// The batches, traced in parallel, in their order; with kernels, if they are to be gathered.
+    fn traced(
+        &self,
+        pass: &Pass,
+        batches: Vec<Batch>,
+        kernels: Option<&Kernels<'_>>,
+        progress: &AtomicU64,
+    ) -> Vec<Traced> {
         let trace = |batch: Batch| {
             // Buffers are made once and passed on: making them takes as long as tracing a small batch.
             let free = || self.photon_workspaces.lock().unwrap_or_else(PoisonError::into_inner);
             let mut workspace = free().pop().unwrap_or_else(|| PhotonWorkspace::new(self.scene()));
-            let traced = self.trace_photons(pass, batch, &mut workspace);
+            let mut traced = self.trace_photons(pass, batch, &mut workspace);
+            if let Some(kernels) = kernels {
+                dispatch!(self.token(), l => kernels.spread(l, &mut traced.photons));
+            }
             free().push(workspace);
             progress.fetch_add(batch.count.into(), Ordering::Relaxed);
             traced

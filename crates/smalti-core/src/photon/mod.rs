@@ -11,19 +11,18 @@
 pub mod account;
 pub mod aim;
 pub mod emit;
+pub mod forest;
 pub mod gather;
-pub mod grid;
 pub mod kd_tree;
+pub mod kernel;
 pub mod map;
 pub mod maps;
-pub mod nearest;
 pub mod pass;
 pub mod pilot;
 pub mod shadow;
 pub mod show;
 pub mod store;
 pub mod surfaces;
-pub mod view;
 pub mod visibility;
 
 pub use account::Account;
@@ -62,13 +61,15 @@ pub struct Photons {
     /// Where they landed, in the scene's frame, and their [`Tag`] (bits).
     pub places: Vec<[f32; 4]>,
     /// Flux that they brought, three channels, in the frame's units (W · frame²/m²), and the number of scattering
-    /// events before (bits).
+    /// events before (bits). With kernels, what each adds within its disc instead: irradiance.
     pub flux: Vec<[f32; 4]>,
+    /// The radii of their [`kernel`]s; none of photons that serve only to see where photons lie.
+    pub radii: Vec<f32>,
 }
 
 impl Photons {
     /// Bytes that a photon takes.
-    pub const BYTES: u64 = 2 * size_of::<[f32; 4]>() as u64;
+    pub const BYTES: u64 = (2 * size_of::<[f32; 4]>() + size_of::<f32>()) as u64;
 
     /// Number of photons.
     pub fn len(&self) -> usize {

@@ -9,6 +9,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::Tag;
+use super::kernel::{LEAST_STEPS, STEP};
 use crate::accel::cones::leader;
 use crate::lanes::math::disc_segment;
 use crate::lanes::{Lanes, V3};
@@ -36,6 +37,9 @@ pub struct Surfaces {
     borders: Vec<[f32; 4]>,
     /// First border of each primitive, and the end of the last.
     first: Vec<u32>,
+    /// For each primitive the least radius that its places allow (of faces by the place alone: 0), and the largest over
+    /// which it is about flat.
+    limits: Vec<[f32; 2]>,
     /// Cosine and sine of directions all around.
     directions: Vec<[f32; 2]>,
 }
@@ -54,11 +58,14 @@ impl Surfaces {
     pub fn new(scene: &Scene) -> Self {
         let edges = edges(scene);
         let mut leaders: Vec<u32> = (0..scene.shades.len() as u32).collect();
+        let mut limits: Vec<[f32; 2]> = (0..scene.shades.len()).map(|prim| limits(scene, prim)).collect();
         for (a, b) in edges.iter().flat_map(|(edge, faces)| smooth_pairs(scene, *edge, faces)) {
+            let flat = 0.5 * curvature_radius(scene, a, b) as f32;
+            [a, b].into_iter().for_each(|face| limits[face as usize][1] = limits[face as usize][1].min(flat));
             let (a, b) = (leader(&mut leaders, a), leader(&mut leaders, b));
             leaders[a.max(b) as usize] = a.min(b);
         }
-        let mut surfaces = Self { first: vec![0], directions: directions(), ..Self::default() };
+        let mut surfaces = Self { first: vec![0], limits, directions: directions(), ..Self::default() };
         for prim in 0..scene.shades.len() as u32 {
             let group = leader(&mut leaders, prim);
             let [x, y, z, ..] = scene.shades[prim as usize];
@@ -72,7 +79,30 @@ impl Surfaces {
 
     /// Bytes that it takes.
     pub fn bytes(&self) -> u64 {
-        (self.records.len() * 16 + self.borders.len() * 16 + self.first.len() * 4) as u64
+        (self.records.len() * 24 + self.borders.len() * 16 + self.first.len() * 4) as u64
+    }
+
+    /// Number of primitives.
+    pub fn len(&self) -> usize {
+        self.records.len()
+    }
+
+    /// Whether there is no primitive.
+    pub fn is_empty(&self) -> bool {
+        self.records.is_empty()
+    }
+
+    /// The number of the surface of a primitive.
+    pub fn number(&self, prim: u32) -> u32 {
+        self.records[prim as usize][3].to_bits()
+    }
+
+    /// The least radius of a photon at `point` on `prim`, by the steps of its coordinates, and the largest, over which the
+    /// surface is about flat.
+    #[inline(always)]
+    pub fn radii<L: Lanes>(&self, l: L, prim: L::U, point: V3<L>) -> [L::F; 2] {
+        let [least, most] = l.gather_record(&self.limits, prim);
+        [l.max(least, point.max_abs(l) * l.f(LEAST_STEPS * STEP)), most]
     }
 
     /// The surface of a primitive.
@@ -134,6 +164,22 @@ impl Surfaces {
         part
     }
 
+    /// How far the nearest border of the face `prim` is from each point; infinite where there is none.
+    #[inline(always)]
+    pub fn distance_to_border<L: Lanes>(&self, l: L, asks: L::M, prim: L::U, point: V3<L>) -> L::F {
+        let prim = l.select_u(asks, prim, l.u(0));
+        let (mut at, end) = (l.gather_u(&self.first, prim), l.gather_u(&self.first, l.add_u(prim, l.u(1))));
+        let mut nearest = l.f(f32::INFINITY);
+        let mut left = asks & l.lt_u(at, end);
+        while l.any(left) {
+            let distance = self.border(l, left, at, (point, l.f(1.0))).distance;
+            nearest = l.select(left, l.min(nearest, distance), nearest);
+            at = l.add_u(at, l.u(1));
+            left = left & l.lt_u(at, end);
+        }
+        nearest
+    }
+
     /// A border as seen from a point: how far it is in units of the radius, at least 0, and where it lies.
     #[inline(always)]
     fn border<L: Lanes>(&self, l: L, asks: L::M, at: L::U, (point, radius): (V3<L>, L::F)) -> Border<L> {
@@ -178,6 +224,28 @@ impl Surfaces {
         // A wedge narrower than the directions is still something.
         l.max(sum, one) * l.f(1.0 / DIRECTIONS as f32)
     }
+}
+
+/// The limits of a primitive by itself: a disc with a radius up to half of a sphere's own lies within a quarter of it on
+/// the sphere, and has its area.
+fn limits(scene: &Scene, prim: usize) -> [f32; 2] {
+    if prim < scene.faces.len() {
+        return [0.0, f32::INFINITY];
+    }
+    let [x, y, z, radius, ..] = scene.shades[prim];
+    let largest = [x, y, z].map(f32::abs).into_iter().fold(0.0, f32::max) + radius;
+    [largest * LEAST_STEPS * STEP, 0.5 * radius]
+}
+
+/// The radius of the sphere on which two neighbouring faces lie about: the distance of their middles by the difference of
+/// their normals.
+fn curvature_radius(scene: &Scene, a: u32, b: u32) -> f64 {
+    let middle = |prim: u32| {
+        let corners = scene.face_corners(&scene.faces[prim as usize]);
+        corners.iter().map(|corner| point(scene, *corner)).sum::<DVec3>() / corners.len() as f64
+    };
+    let turned = (normal(scene, a) - normal(scene, b)).length().min((normal(scene, a) + normal(scene, b)).length());
+    middle(a).distance(middle(b)) / turned
 }
 
 /// A border as seen from a point.

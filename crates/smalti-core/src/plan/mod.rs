@@ -169,6 +169,15 @@ impl Plan {
         self.has(|stage| matches!(stage, Stage::Show(_)))
     }
 
+    /// The quantity that photons bring.
+    pub fn quantity(&self) -> Quantity {
+        let shown = self.stages.iter().find_map(|stage| match stage {
+            Stage::Show(show) => Some(show.quantity),
+            _ => None,
+        });
+        shown.unwrap_or(Quantity::Radiance)
+    }
+
     /// Whether some stage of the plan meets `test`.
     pub fn has(&self, test: impl Fn(&Stage) -> bool) -> bool {
         self.stages.iter().any(test)

@@ -25,9 +25,18 @@ pub enum Purpose {
     Emission = 6,
     /// Whether a photon map is asked (first number).
     Gather = 7,
-    /// Whether a shadow ray is asked where photons decide (first number). The next bounce's `Film`, which only the
-    /// first has.
+    /// Whether a shadow ray is traced where photons decide (first number).
     Verify = 8,
+}
+
+impl Purpose {
+    /// Bits of a purpose: room for 256 of them beside each other, at every bounce.
+    const BITS: u32 = 8;
+
+    /// The number that keys this purpose at `bounce`: no other pair of bounce (below 2²⁴) and purpose has it.
+    const fn salt(self, bounce: u32) -> u32 {
+        bounce << Self::BITS | self as u32
+    }
 }
 
 /// A path's identity as the sampler knows it.
@@ -94,7 +103,7 @@ impl<L: Lanes> Fan<L> {
     /// For `count` pairs, at least 1.
     #[inline(always)]
     pub fn new(l: L, kind: SamplerKind, keys: Keys<L>, bounce: u32, purpose: Purpose, count: u32) -> Self {
-        let salt = mix(bounce.wrapping_mul(8).wrapping_add(purpose as u32).wrapping_add(0x51ed_270b));
+        let salt = mix(purpose.salt(bounce).wrapping_add(0x51ed_270b));
         // The same numbers in every pixel, whatever the seed.
         let unkeyed = mutant!("seed_ignored_by_bounces") && purpose == Purpose::Bsdf;
         let seed = if unkeyed { l.u(salt) } else { mix_lanes(l, keys.key ^ l.u(salt)) };
@@ -273,4 +282,24 @@ mod tests {
             .into();
         assert!(numbers[0] != numbers[1] && numbers[0] != numbers[2] && numbers[1] != numbers[2]);
     }
+
+    /// The last purpose of a bounce has numbers of its own, not those of the next bounce's first purpose.
+    #[test]
+    fn no_bounce_and_purpose_share_their_numbers() {
+        let salts: Vec<u32> = (0..8).flat_map(|bounce| PURPOSES.map(|purpose| purpose.salt(bounce))).collect();
+        let unique: std::collections::HashSet<u32> = salts.iter().copied().collect();
+        assert_eq!(unique.len(), salts.len());
+    }
+
+    const PURPOSES: [Purpose; 9] = [
+        Purpose::Film,
+        Purpose::LightChoice,
+        Purpose::LightPoint,
+        Purpose::Bsdf,
+        Purpose::Lobe,
+        Purpose::Roulette,
+        Purpose::Emission,
+        Purpose::Gather,
+        Purpose::Verify,
+    ];
 }

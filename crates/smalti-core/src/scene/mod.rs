@@ -7,6 +7,7 @@
 
 mod compile;
 pub mod contact;
+pub mod details;
 pub mod double;
 pub mod frame;
 pub mod media;

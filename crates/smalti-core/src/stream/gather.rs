@@ -13,12 +13,13 @@
 
 use core::f32::consts::FRAC_1_PI;
 
-use super::{DIRECTION, ORIGIN, PRIM, SLOT, Slots, Stream, THROUGHPUT};
+use super::{DIRECTION, ORIGIN, PRIM, SLOT, Slots, Stream, THROUGHPUT, surface};
 use crate::lanes::{Lanes, V3};
 use crate::photon::gather::{Gather, Query};
 use crate::photon::pilot::Pilot;
 use crate::photon::{Quantity, SUB_MAPS};
 use crate::sampling::{Purpose, pair};
+use crate::scene::Scene;
 use crate::settings::SamplerKind;
 
 /// The least chance with which a vertex asks for caustics.
@@ -35,8 +36,8 @@ pub struct Context<'a> {
     pub gather: Gather<'a>,
     /// What to expect of it.
     pub pilot: &'a Pilot,
-    /// What the radius has shrunk to since the first round.
-    pub shrink: f32,
+    /// The scene.
+    pub scene: &'a Scene,
     /// A brightness that is typical of the scene.
     pub reference: f32,
     /// Where numbers come from.
@@ -62,7 +63,8 @@ pub fn caustic<L: Lanes>(
             continue;
         }
         let counts = counts(l, vertices, at);
-        let expected = context.pilot.expected(l, vertices.v3(l, ORIGIN, at));
+        let prim = l.select_u(first, vertices.u(l, PRIM, at), l.u(0));
+        let expected = context.pilot.expected(l, prim, vertices.v3(l, ORIGIN, at));
         let chance = expected * counts.max_component(l) * l.f(1.0 / (CERTAIN * context.reference));
         let chance = l.min(l.max(chance, l.f(LEAST_CHANCE)), l.f(1.0));
         let (u, _) = pair(l, context.sampler, vertices.keys(l, at), bounce, Purpose::Gather);
@@ -119,7 +121,7 @@ pub fn shown<L: Lanes>(
             Quantity::Radiance => counts(l, vertices, at).scale(l.f(factor)),
             Quantity::Count => V3::splat(l, [factor; 3]),
         };
-        slots.add(l, asks, vertices.u(l, SLOT, at), counts * context.gather.shown(l, &query, quantity));
+        slots.add(l, asks, vertices.u(l, SLOT, at), counts * context.gather.irradiance(l, &query).irradiance);
     }
 }
 
@@ -153,14 +155,15 @@ fn answer<L: Lanes>(l: L, context: &Context<'_>, asking: &Stream, slots: &mut Sl
 /// A packet of vertices as the map sees it.
 #[inline(always)]
 fn query<L: Lanes>(l: L, context: &Context<'_>, vertices: &Stream, at: usize, asks: L::M) -> Query<L> {
-    let point = vertices.v3(l, ORIGIN, at);
+    let prim = vertices.u(l, PRIM, at);
+    let inside = l.select_u(asks, prim, l.u(0));
     Query {
-        point,
+        // Rays start beside the surface, by more than the smallest radii.
+        point: surface::beneath(l, context.scene, inside, vertices.v3(l, ORIGIN, at)),
         normal: vertices.v3(l, DIRECTION, at),
-        prim: vertices.u(l, PRIM, at),
+        prim,
         asks,
         // The upper bits are the number of the sample in its round, in some order.
         sub_map: l.shr::<28>(vertices.u(l, SLOT, at)),
-        radius: context.pilot.radius(l, point) * l.f(context.shrink),
     }
 }

@@ -73,6 +73,19 @@ fn of<L: Lanes>(l: L, scene: &Scene, hits: &Stream, at: usize, prim: L::U) -> Hi
     Hit { point: on_surface, normal, outside, colour: V3::new(r, g, b), surface, scale, room }
 }
 
+/// The places on the surfaces of `prim` that lie beneath `point`, where rays leave them.
+#[inline(always)]
+pub fn beneath<L: Lanes>(l: L, scene: &Scene, prim: L::U, point: V3<L>) -> V3<L> {
+    let [x, y, z, w, _, _, _, surface] = l.gather_record(&scene.shades, prim);
+    let geometry = V3::new(x, y, z);
+    let is_sphere = !l.lt_u(l.bits(surface), l.u(scene.planes));
+    let on_plane = offset::onto_plane(l, point, geometry, w);
+    if !l.any(is_sphere) {
+        return on_plane;
+    }
+    V3::select(l, is_sphere, offset::onto_sphere(l, point, geometry, w).0, on_plane)
+}
+
 /// Turns the hits of a diffuse stream into vertices, in place.
 #[inline(always)]
 pub fn run<L: Lanes>(l: L, scene: &Scene, hits: &mut Stream) {

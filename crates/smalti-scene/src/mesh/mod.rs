@@ -1,5 +1,6 @@
 //! `[[mesh]]`: triangles from a file (PLY, OBJ) or written out, transformed, and cleared of those without area.
 
+mod files;
 mod inline;
 mod obj;
 mod ply;
@@ -16,6 +17,8 @@ use crate::file;
 use crate::material::Palette;
 use crate::note::Note;
 use crate::surface::{Skin, skin};
+use files::Files;
+pub use files::{Reading, Watch};
 use soup::{Flaw, Soup};
 
 const KEYS: &[Key] = &[
@@ -29,12 +32,19 @@ const KEYS: &[Key] = &[
     key("radiance", "[1, 1, 1]"),
 ];
 
-/// All meshes, in file order; `file` is relative to `folder`. What is dropped is noted.
-pub fn read_all(root: &Section, palette: &Palette, folder: &Path, notes: &mut Vec<Note>) -> Result<Vec<Mesh>> {
+/// All meshes, in file order; `file` is relative to the folder, and whoever watches hears of it. What is dropped is noted.
+pub fn read_all(
+    root: &Section,
+    palette: &Palette,
+    (folder, watch): (&Path, &Watch),
+    notes: &mut Vec<Note>,
+) -> Result<Vec<Mesh>> {
     let mut meshes = Vec::new();
-    for (index, section) in root.items("mesh", "`[[mesh]]`", KEYS)?.iter().enumerate() {
+    let sections = root.items("mesh", "`[[mesh]]`", KEYS)?;
+    let mut files = Files::new(&sections, folder, watch);
+    for (index, section) in sections.iter().enumerate() {
         let Skin { material, radiance } = skin(section, palette)?;
-        let (name, mut soup) = soup(section, folder, index)?;
+        let (name, mut soup) = soup(section, &mut files, index)?;
         transform::apply(section, &mut soup.vertices)?;
         notes.extend(drop_degenerate(&name, &mut soup));
         meshes.push(Mesh { vertices: soup.vertices, faces: soup.faces, material, radiance });
@@ -43,9 +53,9 @@ pub fn read_all(root: &Section, palette: &Palette, folder: &Path, notes: &mut Ve
 }
 
 /// The triangles as they are written, and what to call them.
-fn soup(section: &Section, folder: &Path, index: usize) -> Result<(String, Soup)> {
+fn soup(section: &Section, files: &mut Files<Soup>, index: usize) -> Result<(String, Soup)> {
     match (section.find("file"), section.find("vertices").or(section.find("faces"))) {
-        (Some(file), None) => Ok((format!("`{}`", file.text()?), from_file(file, folder)?)),
+        (Some(file), None) => Ok((format!("`{}`", file.text()?), files.read(file, from_file)?)),
         (Some(file), Some(also)) => {
             Err(Fault::at(also.span(), "the mesh has both a file and triangles of its own", "")
                 .help(format!("keep `{}`, or `vertices` and `faces`", file.name)))

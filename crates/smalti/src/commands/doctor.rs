@@ -16,6 +16,7 @@ use smalti_doctor::{Finding, Patient, Verdict, examine};
 use super::pixel;
 use crate::args::{DoctorArgs, ImageArgs};
 use crate::exit::{Failure, Status};
+use crate::frontend::{self, Mode};
 use crate::job::Job;
 use crate::print::{self, Messages};
 use crate::record::{self, Subject};
@@ -63,7 +64,7 @@ struct Found {
 
 /// Runs the command.
 pub fn run(args: &DoctorArgs) -> Result<Status, Failure> {
-    let job = Job::load(&args.scene, &args.image, args.simd.simd)?;
+    let job = frontend::set_up(Mode::of_terminal(), |told| Job::load(&args.scene, &args.image, args.simd.simd, told))?;
     Messages { json: false }.notes(&job.notes, args.quiet);
     if args.hunt { hunt(args, &job) } else { examination(args, job) }
 }
@@ -132,7 +133,7 @@ fn verdict(checks: usize, failed: usize, warnings: usize) -> String {
 /// Looks at every value of every stage of the whole render.
 fn hunt(args: &DoctorArgs, job: &Job) -> Result<Status, Failure> {
     let pool = smalti_scheduler::pool(args.threads as usize).map_err(Failure::user)?;
-    let renderer = pool.install(|| job.renderer())?;
+    let renderer = frontend::set_up(Mode::of_terminal(), |told| pool.install(|| job.renderer(told)))?;
     let found = pool.install(|| first_impossible(&renderer));
     let replay = |found: &Impossible| pixel::replayed(&renderer, found.pixel, found.sample);
     let none = format!("{} samples: every value is finite, and none is negative\n", samples(&job.settings));

@@ -8,6 +8,7 @@ use smalti_core::scene::world::Material;
 
 use crate::args::ExplainArgs;
 use crate::exit::{Failure, Status};
+use crate::frontend::{self, Mode};
 use crate::job::Job;
 use crate::record::{self, Subject};
 use crate::table::{Align, table};
@@ -52,8 +53,9 @@ struct DecisionRecord<'a> {
 
 /// Runs the command.
 pub fn run(args: &ExplainArgs) -> Result<Status, Failure> {
-    let job = Job::load(&args.scene, &args.image, args.simd.simd)?;
-    let renderer = job.renderer()?;
+    let mode = Mode::of_terminal();
+    let job = frontend::set_up(mode, |told| Job::load(&args.scene, &args.image, args.simd.simd, told))?;
+    let renderer = frontend::set_up(mode, |told| job.renderer(told))?;
     match args.json {
         true => print::json(&explanation(&job, &renderer))?,
         false => print::result(&text(&job, &renderer))?,

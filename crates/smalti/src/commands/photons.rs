@@ -14,7 +14,7 @@ use super::render;
 use crate::args::{PhotonsArgs, ProgressArg, When};
 use crate::exit::{Failure, Status};
 use crate::frontend::{self, Mode, Title};
-use crate::interrupt::{self, Interrupt};
+use crate::interrupt::{self, Farewell, Interrupt};
 use crate::photons::{Picture, Request, Summary, describe, develop, provenance, summary};
 use crate::print::{self, Messages};
 use crate::record::Work;
@@ -23,16 +23,17 @@ use crate::{memory, outputs};
 /// Runs the command. `start` is when the process began.
 pub fn run(args: &PhotonsArgs, colour: When, start: Instant) -> Result<Status, Failure> {
     let messages = Messages { json: args.run.progress == ProgressArg::Json };
+    let mode = Mode::choose(args.run.progress, args.run.quiet, colour);
+    let interrupt = interrupt::listen(Farewell { restore: frontend::restore, messages }).map_err(Failure::bug)?;
     let outputs = outputs::checked(&args.outputs, &args.scene, "-photons.png")?;
-    let request = Request::load(args)?;
+    let request = frontend::set_up(mode, |told| Request::load(args, told))?;
     messages.notes(&request.job.notes, args.run.quiet);
     let pool = smalti_scheduler::pool(args.run.threads as usize).map_err(Failure::user)?;
-    let renderer = pool.install(|| request.renderer())?;
-    let interrupt = interrupt::listen(frontend::restore).map_err(Failure::bug)?;
+    let renderer = frontend::set_up(mode, |told| pool.install(|| request.renderer(told)))?;
     let tile = request.job.tile(args.run.work.tile);
     let work = Work { threads: pool.current_num_threads(), tile, setup: start.elapsed() };
 
-    let mode = Mode::choose(args.run.progress, args.run.quiet, colour);
+    interrupt.keep();
     let mut outcome = perform(&renderer, &pool, &interrupt, work, mode, title(args, &request, work))?;
     let samples = outcome.film.samples();
     if let Some(signal) = interrupt.signal().filter(|_| outcome.interrupted) {

@@ -6,6 +6,7 @@ use smalti_core::render::{Renderer, Vertex};
 
 use crate::args::PixelArgs;
 use crate::exit::{Failure, Status};
+use crate::frontend::{self, Mode};
 use crate::job::Job;
 use crate::print;
 use crate::table::{Align, table};
@@ -71,9 +72,10 @@ struct Bright {
 
 /// Runs the command.
 pub fn run(args: &PixelArgs) -> Result<Status, Failure> {
-    let job = Job::load(&args.scene, &args.image, args.simd.simd)?;
+    let mode = Mode::of_terminal();
+    let job = frontend::set_up(mode, |told| Job::load(&args.scene, &args.image, args.simd.simd, told))?;
     check_pixel(&job, args)?;
-    let renderer = job.renderer()?;
+    let renderer = frontend::set_up(mode, |told| job.renderer(told))?;
     match args.sample {
         Some(sample) => print_sample(args, sample_record(&job, &renderer, args, sample))?,
         None => print_pixel(args, pixel_record(&job, &renderer, args))?,

@@ -9,11 +9,11 @@ use smalti_core::render::Renderer;
 use smalti_scheduler::{Goal, Outcome, Shelf, Watch, render_to};
 
 use crate::args::{ProgressArg, RenderArgs, When};
-use crate::budget::{self, Budget};
+use crate::budget::{self, Budget, Came, Spent};
 use crate::describe::describe;
 use crate::exit::{Failure, Status};
-use crate::frontend::{self, Mode, Title};
-use crate::interrupt::{self, Interrupt};
+use crate::frontend::{self, Mode, Title, Told};
+use crate::interrupt::{self, Farewell, Interrupt};
 use crate::job::Job;
 use crate::photon_map::PhotonMap;
 use crate::print::{self, Messages};
@@ -24,20 +24,21 @@ use crate::{error_statement, memory, outputs, photon_map, provenance, quality};
 /// Runs the command. `start` is when the process began.
 pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Failure> {
     let messages = Messages { json: args.run.progress == ProgressArg::Json };
+    let mode = Mode::choose(args.run.progress, args.run.quiet, colour);
+    let interrupt = interrupt::listen(Farewell { restore: frontend::restore, messages }).map_err(Failure::bug)?;
     let outputs = outputs::checked(&args.outputs, &args.scene, ".png")?;
     outputs::check_beside(&outputs, args.standard_error.as_deref())?;
-    let mut job = Job::load_downsampled(&args.scene, &args.image, args.downsample, args.run.work.simd.simd)?;
+    let mut job = frontend::set_up(mode, |told| load(args, told))?;
     let photon_map = args.photon_map.as_deref().map(|path| open_photon_map(path, &mut job)).transpose()?;
     messages.notes(&job.notes, args.run.quiet);
     let pool = smalti_scheduler::pool(args.run.threads as usize).map_err(Failure::user)?;
-    let interrupt = interrupt::listen(frontend::restore).map_err(Failure::bug)?;
-    let mode = Mode::choose(args.run.progress, args.run.quiet, colour);
     let budget = Budget::new(&args.budget, args.image.spp);
     let means =
         quality::Means { pool: &pool, cancel: &interrupt.cancel, deadline: budget.time.map(|time| (start, time)) };
     let told = |text: &str| tell_unless_quiet(mode, messages, text);
     let quality = quality::settle(&mut job, (&args.budget, &args.image), &means, told)?;
-    let renderer = pool.install(|| job.renderer())?;
+    let renderer = frontend::set_up(mode, |told| pool.install(|| job.renderer(told)))?;
+    job.check_memory(&renderer, &pool)?;
     let work = Work { threads: pool.current_num_threads(), tile: job.tile(args.run.work.tile), setup: start.elapsed() };
 
     let film = Film::new(job.settings.area(), work.tile);
@@ -45,7 +46,14 @@ pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Fa
     let workers =
         Workers { pool: &pool, interrupt: &interrupt, photon_map: photon_map.as_ref(), downsample: job.downsample };
     let title = Title { goal: budget.shown(&job.settings), ..title(&job, work, args.exposure) };
+    interrupt.keep();
     let mut outcome = perform(&goal, (&renderer, film), &workers, mode, title)?;
+    let spent = Spent {
+        setup: work.setup,
+        photons: outcome.photons.elapsed,
+        total: start.elapsed(),
+        samples: outcome.mean_samples,
+    };
     if budget.is_open() {
         job.settings.spp = outcome.mean_samples;
     }
@@ -60,15 +68,19 @@ pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Fa
     if developed.samples.1 > 0 {
         let mut summary = summary(&job, work, &outcome, &developed);
         summary.quality = quality;
-        let shortfall = judge(&budget, &outcome, &developed, &mut summary);
+        judge((&budget, spent), &outcome, &developed, &mut summary);
         let written = write(&outputs, &developed, &mut summary, job.exposure(args.exposure));
         let written = written.and(errors.map_or(Ok(()), |errors| write_errors(errors, &mut summary, messages)));
         summary.run.wall_seconds = start.elapsed().as_secs_f64();
         tell(args, &summary, messages)?;
-        shortfall.iter().for_each(|text| messages.warning(text));
+        summary.shortfalls.iter().for_each(|text| messages.warning(text));
         written.and(kept)?;
     }
     Ok(status(args.strict, &outcome, &interrupt))
+}
+
+fn load(args: &RenderArgs, told: &Told) -> Result<Job, Failure> {
+    Job::load_downsampled(&args.scene, (&args.image, args.downsample), args.run.work.simd.simd, told)
 }
 
 fn tell_unless_quiet(mode: Mode, messages: Messages, text: &str) {
@@ -77,12 +89,12 @@ fn tell_unless_quiet(mode: Mode, messages: Messages, text: &str) {
     }
 }
 
-/// Notes whether what was wanted was reached; returns what there is to say if it was not.
-fn judge(budget: &Budget, outcome: &Outcome, developed: &Developed, summary: &mut Summary) -> Option<String> {
+/// Notes whether what was wanted was reached, and what there is to say if it was not.
+fn judge((budget, spent): (&Budget, Spent), outcome: &Outcome, developed: &Developed, summary: &mut Summary) {
     let error = developed.error.as_ref();
     let at_most = budget::at_most(error, developed.bias.as_ref());
-    summary.target_reached = budget.is_reached(outcome.stopped, at_most);
-    budget.shortfall(outcome.stopped, error, at_most)
+    let verdict = budget.judge(&Came { stopped: outcome.stopped, spent, error, at_most });
+    (summary.target_reached, summary.shortfalls) = (verdict.reached, verdict.shortfalls);
 }
 
 /// What a display says of a job, of which it shows the picture so far.

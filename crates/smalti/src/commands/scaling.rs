@@ -10,6 +10,7 @@ use smalti_scheduler::{Cancel, Outcome};
 
 use crate::args::{ScalingArgs, Threads};
 use crate::exit::{Failure, Status};
+use crate::frontend::{self, Mode};
 use crate::job::Job;
 use crate::print::{self, Messages};
 use crate::record::{self, Subject};
@@ -68,12 +69,14 @@ struct Run {
 
 /// Runs the command.
 pub fn run(args: &ScalingArgs) -> Result<Status, Failure> {
-    let job = Job::load(&args.scene, &args.image, args.work.simd.simd)?;
+    let mode = Mode::of_terminal();
+    let job = frontend::set_up(mode, |told| Job::load(&args.scene, &args.image, args.work.simd.simd, told))?;
     Messages { json: false }.notes(&job.notes, args.quiet);
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let counts = thread_counts(args.threads.as_ref(), cores);
     let most = counts.iter().copied().max().unwrap_or(1);
-    let renderer = smalti_scheduler::pool(most).map_err(Failure::user)?.install(|| job.renderer())?;
+    let pool = smalti_scheduler::pool(most).map_err(Failure::user)?;
+    let renderer = frontend::set_up(mode, |told| pool.install(|| job.renderer(told)))?;
     let tile = job.tile(args.work.tile);
     let runs = measure(args, &renderer, tile, &counts)?;
     let rows = rows(&counts, &runs);

@@ -5,7 +5,7 @@ use smalti_report::Study;
 use crate::args::{ImageArgs, ProgressArg, When};
 use crate::exit::{Failure, Status};
 use crate::frontend::{self, Mode};
-use crate::interrupt::{self, Interrupt};
+use crate::interrupt::{self, Farewell, Interrupt};
 use crate::job::Job;
 use crate::print::{self, Messages};
 use crate::reproduce::quoted;
@@ -17,7 +17,8 @@ pub fn run(args: &StudyArgs, colour: When) -> Result<Status, Failure> {
     let common = args.preset.common();
     let messages = Messages { json: common.progress == ProgressArg::Json };
     let flags = ImageArgs { seed: common.seed, camera: common.camera.clone(), ..ImageArgs::default() };
-    let job = Job::read(&common.scene, &flags, common.work.simd.simd)?;
+    let mode = Mode::choose(common.progress, common.quiet, colour);
+    let job = frontend::set_up(mode, |told| Job::read(&common.scene, &flags, common.work.simd.simd, told))?;
     let scene = own_way(&job);
     let tile = job.tile(common.work.tile);
     let plan = args.preset.plan(&scene, &job.world)?;
@@ -30,11 +31,11 @@ pub fn run(args: &StudyArgs, colour: When) -> Result<Status, Failure> {
     if job.settings.crop.is_some() {
         messages.note("the scene's crop is left out: a study renders whole images");
     }
-    let interrupt = interrupt::listen(frontend::restore).map_err(Failure::bug)?;
+    let interrupt = interrupt::listen(Farewell { restore: frontend::restore, messages }).map_err(Failure::bug)?;
+    interrupt.keep();
 
     let repetitions = plan.repetitions(common.reps);
     let (total, done) = (study::interleaved(&repetitions).len(), there.as_ref().map_or(0, |study| study.runs.len()));
-    let mode = Mode::choose(common.progress, common.quiet, colour);
     let mut performance = Performance {
         plan,
         repetitions,

@@ -1,17 +1,20 @@
-//! Live bars: one frame after the other in the same place, drawn by indicatif.
+//! Live bars: one frame after the other in the same place.
+//!
+//! Each line of a frame ends by itself, and what is right of it is cleared, not filled: where the terminal becomes
+//! narrower, only lines that no longer fit are broken, and it is known into how many rows.
 
-use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io;
+
+use console::measure_text_width;
 use smalti_scheduler::Event;
 
 use super::frame::{self, Frame, Size};
+use super::numbers;
 use super::picture::{Look, Picture};
 use super::screen::{Screen, Surface};
 use super::tally::Tally;
 use super::terminal::Palette;
 use super::{Title, View};
-
-/// The length of a bar: what is foreseen changes, its bar does not.
-const WHOLE: u64 = 1 << 16;
 
 /// Frames on a surface.
 pub struct Bars<S> {
@@ -22,21 +25,12 @@ pub struct Bars<S> {
     drawn: Option<Drawn>,
 }
 
-/// The frame on the surface.
+/// The frame on the surface, with the cursor behind its last line.
 struct Drawn {
-    /// Where indicatif draws; it holds one bar, with everything else of the frame as that bar's text.
-    place: MultiProgress,
-    bar: ProgressBar,
-    shape: Shape,
-}
-
-/// What must not change for a frame to be drawn over the last one.
-#[derive(Clone, Copy, PartialEq, Eq)]
-struct Shape {
     /// The size of the surface.
     size: Size,
-    /// The lines of the frame.
-    lines: usize,
+    /// Columns of each line.
+    widths: Vec<usize>,
 }
 
 impl Bars<Screen> {
@@ -63,51 +57,57 @@ impl<S: Surface> Bars<S> {
         (usize::from(self.surface.width()), usize::from(self.surface.height()))
     }
 
-    /// The bar of a frame of that shape. Where the last frame had another, it is wiped and a new bar is begun.
-    fn bar(&mut self, shape: Shape) -> Drawn {
+    fn draw(&mut self, tally: &Tally) -> io::Result<()> {
+        let size = self.measure();
+        let frame = frame::live(&self.title, tally, self.picture(), self.look, size);
+        let lines = lines(frame, tally, size.0, self.look.palette);
+        let widths: Vec<usize> = lines.iter().map(|line| measure_text_width(line)).collect();
+        // A frame of the same shape is overwritten: a terminal without synchronised output does not flicker.
         match self.drawn.take() {
-            Some(drawn) if drawn.shape == shape => return drawn,
-            Some(drawn) => self.wipe(&drawn, shape.size),
+            Some(drawn) if drawn.size == size && drawn.widths.len() == lines.len() => {
+                self.rise(&drawn, size)?;
+            }
+            Some(drawn) => self.wipe(&drawn, size)?,
             None => {}
         }
-        let target = ProgressDrawTarget::term_like(Box::new(self.surface.clone()));
-        let place = MultiProgress::with_draw_target(target);
-        // Lines are overwritten, not cleared first: a terminal without synchronised output does not flicker.
-        place.set_move_cursor(true);
-        let bar = place.add(ProgressBar::with_draw_target(Some(WHOLE), ProgressDrawTarget::hidden()));
-        Drawn { place, bar, shape }
+        for (index, (line, width)) in lines.iter().zip(&widths).enumerate() {
+            self.surface.write_str(if index > 0 { "\r\n" } else { "" })?;
+            self.surface.write_str(line)?;
+            // Behind a full line the cursor still stands on its last column.
+            self.surface.write_str(if *width < size.0 { "\x1b[K" } else { "" })?;
+        }
+        self.drawn = Some(Drawn { size, widths });
+        self.surface.flush()
     }
 
-    /// Wipes what was drawn before the surface became `size`.
-    fn wipe(&self, drawn: &Drawn, size: Size) {
-        drawn.place.set_draw_target(ProgressDrawTarget::hidden());
-        let lines = broken_anew(drawn.shape.lines, drawn.shape.size.0, size.0).min(size.1);
-        let _ = self.surface.move_cursor_up(lines.saturating_sub(1));
-        let _ = self.surface.write_str("\r\x1b[J");
+    /// Moves the cursor to the start of what was drawn, now that the surface has `size`; returns the rows of it that are
+    /// on the surface.
+    fn rise(&self, drawn: &Drawn, size: Size) -> io::Result<usize> {
+        let rows = rows(&drawn.widths, size.0).min(size.1);
+        self.surface.move_cursor_up(rows.saturating_sub(1))?;
+        self.surface.write_str("\r")?;
+        Ok(rows)
     }
 
-    fn draw(&mut self, tally: &Tally) {
+    /// Wipes what was drawn, row by row: where all is cleared at once, some terminals put it into their scroll-back.
+    fn wipe(&self, drawn: &Drawn, size: Size) -> io::Result<()> {
+        let rows = self.rise(drawn, size)?;
+        for row in 0..rows {
+            self.surface.clear_line()?;
+            self.surface.move_cursor_down(usize::from(row + 1 < rows))?;
+        }
+        self.surface.move_cursor_up(rows.saturating_sub(1))
+    }
+
+    fn leave(&mut self, tally: &Tally) -> io::Result<()> {
         let size = self.measure();
-        let Frame { above, text, below } = frame::live(&self.title, tally, self.picture(), self.look, size);
-        let style = style(!above.is_empty(), below, self.look.palette);
-        let lines = above.len() + if below { 2 } else { 1 };
-        let drawn = self.bar(Shape { size, lines });
-        let bar = drawn.bar.clone().with_style(style).with_prefix(above.join("\n")).with_message(text);
-        bar.with_position(part(tally)).tick();
-        self.drawn = Some(drawn);
-    }
-
-    fn leave(&mut self, tally: &Tally) {
-        let size = self.measure();
-        match self.drawn.take() {
-            Some(drawn) if drawn.shape.size == size => drawn.bar.finish_and_clear(),
-            Some(drawn) => self.wipe(&drawn, size),
-            None => {}
+        if let Some(drawn) = self.drawn.take() {
+            self.wipe(&drawn, size)?;
         }
         for line in frame::last(&self.title, tally, self.picture(), self.look, size) {
-            let _ = self.surface.write_line(&line);
+            self.surface.write_line(&line)?;
         }
-        let _ = self.surface.flush();
+        self.surface.flush()
     }
 }
 
@@ -122,40 +122,47 @@ impl<S: Surface> View for Bars<S> {
 
     fn tick(&mut self, tally: &Tally) {
         if self.picture.is_some() {
-            self.draw(tally);
+            let _ = self.draw(tally);
         }
     }
 
     fn end(&mut self, tally: &Tally) {
-        self.leave(tally);
+        let _ = self.leave(tally);
     }
 }
 
-/// Lines that `lines` lines of `from` columns become when the terminal has `to` columns. Indicatif fills every line to
-/// its end and lets the terminal break it, so to a terminal that breaks lines anew the whole frame is one long line.
-fn broken_anew(lines: usize, from: usize, to: usize) -> usize {
-    (lines * from).div_ceil(to)
+/// Rows that lines of these widths take where a row has so many columns: what does not fit goes on in the next row.
+fn rows(widths: &[usize], columns: usize) -> usize {
+    widths.iter().map(|width| width.div_ceil(columns.max(1)).max(1)).sum()
 }
 
-/// How much of the bar is done; nothing where the end cannot be foreseen.
-fn part(tally: &Tally) -> u64 {
-    let part =
-        |total: u64| (u128::from(tally.done) * u128::from(WHOLE)).checked_div(total.into()).map(|part| part as u64);
-    tally.total.map_or(0, |total| part(total).unwrap_or(WHOLE))
+/// A frame line by line, none wider than so many columns: the bar fills what the text beside it leaves.
+fn lines(Frame { above, text, below }: Frame, tally: &Tally, columns: usize, palette: Palette) -> Vec<String> {
+    let beside = if below { 0 } else { measure_text_width(&text) + 1 };
+    let (done, all) = part(tally);
+    let bar = numbers::bar(done, all, columns.saturating_sub(beside));
+    let bar = if palette == Palette::Mono { bar } else { format!("\x1b[36m{bar}\x1b[0m") };
+    let mut lines = above;
+    match columns > beside {
+        true if below => lines.extend([bar, text]),
+        true => lines.push(format!("{bar} {text}")),
+        false => lines.push(text),
+    }
+    lines
 }
 
-/// Where text and bar stand.
-fn style(above: bool, below: bool, palette: Palette) -> ProgressStyle {
-    let head = if above { "{prefix}\n" } else { "" };
-    let bar = if palette == Palette::Mono { "{wide_bar}" } else { "\x1b[36m{wide_bar}\x1b[0m" };
-    let tail = if below { "\n{msg}" } else { " {msg}" };
-    let style = ProgressStyle::with_template(&[head, bar, tail].concat()).expect("a fixed template");
-    style.progress_chars("█▉▊▋▌▍▎▏ ")
+/// How much is done of how much; nothing where the end cannot be foreseen.
+fn part(tally: &Tally) -> (u64, u64) {
+    match tally.total {
+        Some(0) => (1, 1),
+        Some(total) => (tally.done, total),
+        None => (0, 1),
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use indicatif::InMemoryTerm;
+    use indicatif::{InMemoryTerm, TermLike};
 
     use super::*;
     use crate::frontend::fixture;
@@ -232,9 +239,43 @@ mod tests {
     }
 
     #[test]
-    fn lines_are_broken_anew() {
-        assert_eq!(broken_anew(10, 80, 40), 20);
-        assert_eq!(broken_anew(10, 80, 79), 11);
-        assert_eq!(broken_anew(10, 80, 200), 4);
+    fn lines_are_broken_where_they_no_longer_fit() {
+        assert_eq!(rows(&[80, 38, 38, 0, 79], 80), 5);
+        assert_eq!(rows(&[80, 38, 38, 0, 79], 79), 6);
+        assert_eq!(rows(&[80, 38, 38, 0, 79], 40), 7);
+        assert_eq!(rows(&[80, 38, 38, 0, 79], 19), 5 + 2 + 2 + 1 + 5);
+        assert_eq!(rows(&[80, 40], 200), 2, "wider terminals join nothing");
+        assert_eq!(rows(&[3, 0], 0), 4);
+    }
+
+    #[test]
+    fn no_line_is_wider_than_the_terminal() {
+        for columns in [1, 2, 7, 20, 59, 60, 80, 200] {
+            let frame =
+                |below| Frame { above: vec!["title".into()], text: "50 %".chars().take(columns).collect(), below };
+            for below in [false, true] {
+                let lines = lines(frame(below), &fixture::half_way(2), columns, Palette::True);
+                let widths: Vec<usize> = lines[1..].iter().map(|line| measure_text_width(line)).collect();
+                assert!(widths.iter().all(|width| *width <= columns), "{columns}: {lines:?}");
+                assert_eq!(widths.len(), if below { 2 } else { 1 });
+            }
+        }
+    }
+
+    #[test]
+    fn a_frame_that_was_broken_anew_is_wiped_as_a_whole() {
+        for (before, after) in [(80, 40), (80, 79), (80, 61), (100, 60), (40, 80)] {
+            let (mut bars, tally) = drawn((before, 30), 2, Palette::Mono, 1);
+            let lines = bars.surface.contents();
+            // What such a terminal does: a shell's line above, then the frame at the new width.
+            let narrow = InMemoryTerm::new(60, after);
+            narrow.write_line("$ smalti render").unwrap();
+            narrow.write_str(&lines.replace('\n', "\r\n")).unwrap();
+            bars.surface = narrow;
+            bars.tick(&tally);
+            let contents = bars.surface.contents();
+            let alone = drawn((after, 60), 2, Palette::Mono, 1).0.surface.contents();
+            assert_eq!(contents, format!("$ smalti render\n{alone}"), "{before} to {after}");
+        }
     }
 }

@@ -1,6 +1,8 @@
 //! JSON lines for machines: one object for each fact, in the order in which they happened.
 //!
 //! Every object has `event`; times are in seconds, places are `[x, y, width, height]` in pixels of the whole image:
+//! - `reading`: `file, bytes` (0 where it has no length, as a pipe); before a scene or mesh file is read
+//! - `building`: `triangles` (of all meshes); before the scene is compiled and its tree built
 //! - `started`: `scene, area, spp, integrator, threads, simd, setup_seconds, tiles` (their number)`, from_spp` (what
 //!   every pixel had before)`, samples` (to do, over all pixels); `spp` and `samples` are null where they cannot be
 //!   foreseen yet: before the first sample of a render until a time, before the first judgement of one until an error

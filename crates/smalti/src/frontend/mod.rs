@@ -20,6 +20,7 @@ mod pen;
 mod picture;
 mod plain;
 mod screen;
+mod setup;
 mod summary;
 mod tally;
 mod terminal;
@@ -40,6 +41,7 @@ use terminal::{Palette, Terminal};
 
 pub use goal::Goal;
 pub use screen::restore;
+pub use setup::{Step, Told, set_up};
 
 /// How progress is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,6 +60,12 @@ impl Mode {
     /// The mode that `--progress`, `--quiet`, `--color` and the terminal come to.
     pub fn choose(typed: ProgressArg, quiet: bool, colour: When) -> Self {
         choose(typed, quiet, colour, &Terminal::of_stderr())
+    }
+
+    /// The mode of a command without these flags: nothing where nobody looks on.
+    pub fn of_terminal() -> Self {
+        let terminal = Terminal::of_stderr();
+        if terminal.draws() { Mode::Bar(terminal.palette(When::Auto)) } else { Mode::None }
     }
 }
 

@@ -1,4 +1,4 @@
-//! The terminal on stderr as indicatif draws on it: a frame is collected and written in one go.
+//! The terminal on stderr: a frame is collected and written in one go.
 //!
 //! A write hides the cursor first and shows it last, and asks the terminal to put the frame on the screen at once
 //! (synchronised output). Between two writes the terminal is always in order: no panic and no signal can leave the
@@ -20,6 +20,12 @@ pub fn restore() {
     if DRAWN.load(Ordering::Relaxed) {
         let _ = stderr().write_all(b"\x1b[0m\x1b[?25h\x1b[?2026l\n");
     }
+}
+
+/// Puts `text`, which is shorter than a line, in the place of the last line.
+pub fn put_line(text: &str) {
+    DRAWN.store(!text.is_empty(), Ordering::Relaxed);
+    let _ = stderr().write_all(format!("\r{text}\x1b[K").as_bytes());
 }
 
 /// Something that frames are drawn on.

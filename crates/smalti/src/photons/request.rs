@@ -8,8 +8,9 @@ use smalti_core::settings::{Integrator, Settings};
 
 use crate::args::{ImageArgs, PhotonImageArgs, PhotonsArgs};
 use crate::exit::Failure;
-use crate::job::{Job, check_memory};
-use crate::memory;
+use crate::frontend::{Step, Told};
+use crate::job::Job;
+use crate::memory::{self, Need};
 use crate::names::{ColourArg, IntegratorArg, MapArg};
 
 /// Photons for each light where nothing is said, as in the report.
@@ -42,20 +43,22 @@ pub struct Lights {
 
 impl Request {
     /// Reads the scene and applies the flags.
-    pub fn load(args: &PhotonsArgs) -> Result<Self, Failure> {
-        let mut job = Job::load(&args.scene, &flags(&args.image), args.run.work.simd.simd)?;
+    pub fn load(args: &PhotonsArgs, told: &Told) -> Result<Self, Failure> {
+        let mut job = Job::load(&args.scene, &flags(&args.image), args.run.work.simd.simd, told)?;
         let lights = Lights::of(&job.world);
         let usual = if has_casters(&job.world) { MapArg::Caustic } else { MapArg::Global };
         let map = args.image.map.unwrap_or(usual);
         let photons = args.image.photons.unwrap_or_else(|| lights.photons(map.into()));
         job.settings = settings(&job.settings, &args.image, photons);
-        let bytes = memory::map_bytes(map.into(), job.settings.photons_of_round());
-        check_memory(&job.settings, bytes, memory::total_bytes())?;
+        let photons = memory::map_bytes(map.into(), job.settings.photons_of_round());
+        let shapes = memory::shapes(&job.world);
+        Need { settings: &job.settings, downsample: 1, photons, shifts: false, shapes }.check(&memory::least())?;
         Ok(Self { job, map, colour: args.image.colour, lights })
     }
 
     /// Compiles the scene and plans what it takes.
-    pub fn renderer(&self) -> Result<Renderer, Failure> {
+    pub fn renderer(&self, told: &Told) -> Result<Renderer, Failure> {
+        told(Step::Building { triangles: memory::triangles(&self.job.world) });
         let Job { world, settings, level, .. } = &self.job;
         let show = Show { map: self.map.into(), quantity: self.colour.quantity() };
         Renderer::showing(world, settings.clone(), show, *level).map_err(Failure::user)

@@ -49,11 +49,14 @@ impl<'a> Bench<'a> {
         Self { job, pool, cancel, deadline, maps: PilotMaps::default() }
     }
 
-    /// The pilot of a candidate; `None` if it was stopped.
+    /// The pilot of a candidate; `None` if it was stopped, or its time was up before it began.
     ///
     /// # Errors
     /// The scene cannot be rendered, or a worker panicked.
     pub fn render(&mut self, candidate: Candidate) -> Result<Option<Pilot>, Failure> {
+        if self.cancel.is_cancelled() || self.deadline.is_some_and(|deadline| deadline <= Instant::now()) {
+            return Ok(None);
+        }
         let settings = small(&self.job.settings, candidate);
         let renderer = self.pool.install(|| Renderer::new(&self.job.world, settings.clone(), self.job.level));
         let renderer = renderer.map_err(Failure::user)?;

@@ -6,7 +6,8 @@ use clap::{Args, Subcommand};
 
 use super::lists::KnobLists;
 use crate::args::{ProgressArg, WorkArgs};
-use crate::parse::{Size, parse_seconds, parse_share, parse_size};
+use crate::parse::{Size, parse_share, parse_size};
+use crate::time;
 
 /// Arguments of `smalti study`.
 #[derive(Debug, Args)]
@@ -109,8 +110,8 @@ pub struct ReportArgs {
 pub struct EqualTimeArgs {
     #[command(flatten)]
     pub common: CommonArgs,
-    /// How long each render takes, about
-    #[arg(long, value_name = "S", value_parser = parse_seconds, default_value = "1", allow_hyphen_values = true)]
+    /// How long each render takes, about: 2, 500ms, 1m30s
+    #[arg(long, value_name = "TIME", value_parser = time::parse, default_value = "1", allow_hyphen_values = true)]
     pub seconds: f64,
     #[command(flatten)]
     pub knobs: KnobLists,
@@ -124,8 +125,8 @@ pub struct EqualErrorArgs {
     /// The relative error of each render, about: 3% or 0.03; noise alone, a bias comes on top
     #[arg(long, value_name = "E", value_parser = parse_share, default_value = "3%", allow_hyphen_values = true)]
     pub error: f64,
-    /// No render takes longer than this, about; an arm that would has a larger error
-    #[arg(long, value_name = "S", value_parser = parse_seconds, default_value = "60", allow_hyphen_values = true)]
+    /// No render takes longer than this, about: 90, 1m30s; an arm that would has a larger error
+    #[arg(long, value_name = "TIME", value_parser = time::parse, default_value = "60", allow_hyphen_values = true)]
     pub seconds: f64,
     #[command(flatten)]
     pub knobs: KnobLists,

@@ -14,8 +14,8 @@ use super::way::Way;
 use crate::budget::{self, Budget};
 use crate::exit::Failure;
 use crate::interrupt::Interrupt;
-use crate::job::{Job, check_memory};
-use crate::memory;
+use crate::job::Job;
+use crate::memory::{self, Need};
 use crate::summary::{Developed, develop};
 
 /// Renders ways of one scene.
@@ -107,5 +107,6 @@ fn pool(pools: &mut BTreeMap<usize, ThreadPool>, threads: usize) -> Result<&Thre
 /// A way that cannot be rendered is refused before anything is.
 pub fn check(way: &Way) -> Result<(), Failure> {
     let settings = way.rendered()?;
-    check_memory(&settings, memory::photon_bytes(&settings), memory::total_bytes())
+    let photons = memory::photon_bytes(&settings);
+    Need { settings: &settings, downsample: way.downsample, photons, shifts: false, shapes: 0 }.check(&memory::least())
 }

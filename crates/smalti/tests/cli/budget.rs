@@ -4,7 +4,7 @@
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::room::{folder, json, refuses, run, stderr};
+use crate::room::{folder, json, refuses, run, stderr, stdout};
 
 fn rendered(folder: &TempDir, flags: &str) -> Value {
     json(folder, &format!("render room.toml {flags} --json -q"))
@@ -66,12 +66,54 @@ fn where_the_noise_is_there_are_more_samples() {
 #[test]
 fn a_time_that_is_up_ends_it() {
     let folder = folder();
-    for flags in ["--time 0.4s", "--time 0.4 --adaptive on", "--time 0.4 --target-error 0.01%"] {
+    for flags in ["--time 1s", "--time 1000ms --adaptive on", "--time 0m1s --target-error 0.01%"] {
         let summary = rendered(&folder, flags);
         assert_eq!(summary["stopped_by"], "time", "{flags}");
         assert_eq!(summary["target_reached"], !flags.contains("--target-error"), "{flags}");
         assert_reproducible(&folder, &summary);
     }
+}
+
+#[test]
+fn a_time_shorter_than_a_sample_a_pixel_is_exceeded_by_no_more_than_that_and_said() {
+    let folder = folder();
+    let large = "--size 640x480 --time 30ms --threads 1";
+    for flags in [
+        "--integrator path",
+        "--integrator photon --photons 20000",
+        "--integrator auto --photons 20000 --adaptive on",
+        "--integrator whitted --target-error 5%",
+        "--integrator path --quality draft",
+        "--integrator path --downsample 2",
+        "--integrator path --spp 1",
+    ] {
+        let output = run(&folder, &format!("render room.toml {large} {flags} --json -q"));
+        assert_eq!(output.status.code(), Some(0), "{flags}: {}", stderr(&output));
+        let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let samples = ["samples_least", "samples_most", "spp"].map(|field| summary[field].as_u64().unwrap());
+        assert_eq!((samples, &summary["target_reached"]), ([1; 3], &false.into()), "{flags}");
+        let said = stderr(&output);
+        assert!(said.contains("warning: the time of 30.0 ms was too short: "), "{flags}: {said}");
+        assert!(said.contains("one sample a pixel"), "{flags}: {said}");
+        assert_eq!(
+            said.contains("the error of"),
+            flags.contains("error") || flags.contains("quality"),
+            "{flags}: {said}"
+        );
+        let first = summary["shortfalls"][0].as_str().unwrap();
+        assert!(said.contains(first), "{first} is not in {said}");
+        assert_reproducible(&folder, &summary);
+    }
+}
+
+#[test]
+fn a_time_that_was_too_short_stands_in_the_text_too() {
+    let folder = folder();
+    let output = run(&folder, "render room.toml --size 640x480 --time 30ms --progress none");
+    let text = stdout(&output);
+    assert!(text.lines().any(|line| line.contains("missed") && line.contains("the time of 30.0 ms")), "{text}");
+    let in_time = stdout(&run(&folder, "render room.toml --time 1s --progress none"));
+    assert!(!in_time.contains("missed"), "{in_time}");
 }
 
 #[test]
@@ -128,9 +170,13 @@ fn what_nobody_can_judge_is_said() {
 
 #[test]
 fn budgets_that_make_no_sense() {
-    for time in ["0", "-1", "abc", "10m"] {
-        refuses(&format!("render room.toml --time {time}"), &["--time", "greater than 0, for example 0.5 or 10s"]);
+    for time in ["0", "-1", "abc", "10x"] {
+        refuses(&format!("render room.toml --time {time}"), &["--time", "greater than 0, for example 500ms, 10s"]);
     }
+    refuses("render room.toml --time 5min", &["--time", "did you mean '5m'?"]);
+    refuses("render room.toml --time 1e20", &["--time", "at most 1e9 seconds"]);
+    refuses("study equal-time room.toml --seconds 1m30", &["--seconds", "did you mean '1m30s'?"]);
+    refuses("study equal-error room.toml --seconds 2hours", &["--seconds", "did you mean '2h'?"]);
     for error in ["0", "-1", "0%", "much"] {
         let parts = ["--target-error", "greater than 0, for example 3% or 0.03"];
         refuses(&format!("render room.toml --target-error {error}"), &parts);

@@ -1,6 +1,7 @@
 //! `render`: files, the account, progress, the command that gives the same image; `explain` and `scaling`.
 
 use std::fs;
+use std::process::Output;
 
 use serde_json::Value;
 use tempfile::TempDir;
@@ -149,6 +150,10 @@ fn progress_as_json_leaves_nothing_but_json_on_stderr() {
     for line in stderr(&output).lines() {
         assert!(serde_json::from_str::<Value>(line).unwrap().is_object(), "{line}");
     }
+    let events = |output: &Output| -> Vec<Value> {
+        stderr(output).lines().map(|line| serde_json::from_str::<Value>(line).unwrap()["event"].clone()).collect()
+    };
+    assert_eq!(events(&output)[..3], ["reading", "building", "started"]);
     let output = run(&folder, "render nowhere.toml --progress json");
     assert_eq!(output.status.code(), Some(2));
     let message: Value = serde_json::from_slice(&output.stderr).unwrap();

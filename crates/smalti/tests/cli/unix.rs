@@ -80,6 +80,87 @@ fn an_interrupted_study_is_kept_and_goes_on() {
     assert_eq!(study["runs"].as_array().unwrap().len(), 2 * (done / 2 + 1));
 }
 
+/// A folder whose scene is a pipe that nobody writes to: it is read for ever.
+fn endless() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    assert!(Command::new("mkfifo").arg(folder.path().join("room.toml")).status().unwrap().success());
+    folder
+}
+
+#[test]
+fn an_interrupt_while_the_scene_is_read_ends_it_at_once() {
+    for (signal, code) in [("-INT", 130), ("-TERM", 143), ("-HUP", 129)] {
+        for line in [
+            "render room.toml --progress json -o a.pfm",
+            "render room.toml --progress json --quality draft -o a.pfm",
+            "photons room.toml --progress json -o a.pfm",
+        ] {
+            let folder = endless();
+            let (child, mut events) = start_until(&mut command(folder.path(), line), "\"reading\"");
+            send(signal, &child);
+            let mut rest = String::new();
+            events.read_to_string(&mut rest).unwrap();
+            let output = child.wait_with_output().unwrap();
+            assert_eq!((output.status.code(), output.stdout.len()), (Some(code), 0), "{line}: {rest}");
+            assert!(rest.contains("before the first sample: nothing is written"), "{line}: {rest}");
+            assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "{line} left a file");
+        }
+    }
+}
+
+#[test]
+fn a_log_tells_what_is_read_when_it_takes_long() {
+    let folder = endless();
+    for line in ["render room.toml --progress plain", "study sweep room.toml --spp 1 --progress plain"] {
+        let (mut child, _) = start_until(&mut command(folder.path(), line), "reading room.toml\n");
+        send("-KILL", &child);
+        child.wait().unwrap();
+    }
+    for quiet in ["--progress none", "--progress plain -q"] {
+        let mut command = command(folder.path(), &format!("render room.toml {quiet}"));
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(400));
+        send("-KILL", &child);
+        let mut said = String::new();
+        child.stderr.take().unwrap().read_to_string(&mut said).unwrap();
+        child.wait().unwrap();
+        assert_eq!(said, "", "{quiet}");
+    }
+}
+
+/// The program below limits of the shell.
+#[cfg(target_os = "linux")]
+fn limited(limit: &str, line: &str) -> std::process::Output {
+    let script = format!("ulimit {limit}; exec '{}' {line}", env!("CARGO_BIN_EXE_smalti"));
+    let folder = folder();
+    let output = Command::new("sh").current_dir(folder.path()).args(["-c", &script]).output().unwrap();
+    let files = if output.status.success() { 2 } else { 1 };
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), files, "{line}: {}", stderr(&output));
+    output
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn what_does_not_fit_below_the_limit_of_the_process_is_refused() {
+    for (limit, name) in [("-v 600000", "614 MB (ulimit -v)"), ("-d 500000", "512 MB (ulimit -d)")] {
+        for (line, parts) in [
+            ("render room.toml --size 8000x8000 --spp 1", ["8000x8000 pixels need", "--size"]),
+            ("render room.toml --size 4000x4000 --downsample 2", ["8000x8000 pixels need", "--size"]),
+            ("render room.toml --photons 50000000", ["50000000 photons need", "--photons"]),
+            ("photons room.toml --photons 100000000", ["100000000 photons need", "--photons"]),
+            ("study sweep room.toml --size 8000x8000", ["8000x8000 pixels need", "--size"]),
+        ] {
+            let output = limited(limit, line);
+            let said = stderr(&output);
+            assert_eq!(output.status.code(), Some(2), "{limit} {line}: {said}");
+            assert!(said.contains(&format!("this process may use {name}")), "{limit} {line}: {said}");
+            assert!(parts.iter().all(|part| said.contains(part)), "{limit} {line}: {said}");
+        }
+        let output = limited(limit, "render room.toml --threads 2 -q");
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    }
+}
+
 #[test]
 fn an_ignored_hangup_stays_ignored() {
     let folder = folder();

@@ -110,11 +110,15 @@ fn spheres_pair_where_one_is_around_the_other() {
         let ball =
             |x: f64, radius: f64, material: usize| Sphere { centre: DVec3::X * x, radius, material, radiance: None };
         let mut world = world();
-        world.spheres = vec![ball(0.0, 1.0, 1), ball(x, radius, 0), ball(3.0, 0.2, 0)];
+        world.spheres = vec![ball(0.0, 1.0, 1), ball(x, radius, 0), ball(2.9, 0.2, 0)];
+        assert_eq!(Frame::of(&world).scale, 0.25);
         found(&world)
     };
+    let scale = 0.25;
     assert!(matches!(balls(1.0, 0.0)[..], [pair] if pair.coincides()));
-    assert!(matches!(balls(1.0 - 3e-6, 0.0)[..], [pair] if !pair.coincides() && (pair.gap + 3e-6 / 4.0).abs() < 1e-9));
+    assert!(
+        matches!(balls(1.0 - 3e-6, 0.0)[..], [pair] if !pair.coincides() && (pair.gap + 3e-6 * scale).abs() < 1e-9)
+    );
     assert!(matches!(balls(1.0 + 3e-6, 0.0)[..], [pair] if pair.gap > 0.0));
     assert_eq!(balls(0.5, 0.5), [], "they touch at a point");
     assert_eq!(balls(1.0, 2.0), []);

@@ -8,7 +8,7 @@ use crate::scene::world::World;
 use crate::scene::{Frame, Origin};
 
 /// Fewer steps of its coordinates than this across, and a thing is drawn wrong.
-const STEPS: f64 = 200.0;
+pub const STEPS: f64 = 200.0;
 
 /// Polygons, meshes and spheres that are too small; one finding for all, with the smallest.
 pub fn examine(world: &World, frame: &Frame) -> Option<Finding> {
@@ -29,7 +29,7 @@ pub fn examine(world: &World, frame: &Frame) -> Option<Finding> {
 }
 
 /// Every thing with its box.
-fn things(world: &World) -> Vec<(Origin, DVec3, DVec3)> {
+pub fn things(world: &World) -> Vec<(Origin, DVec3, DVec3)> {
     let around = |points: &[DVec3]| {
         let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         points.iter().fold(none, |(low, high), point| (low.min(*point), high.max(*point)))

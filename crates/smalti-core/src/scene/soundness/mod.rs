@@ -6,6 +6,7 @@
 
 mod bodies;
 mod coarse;
+mod rough;
 mod thin;
 mod turned;
 mod words;
@@ -78,6 +79,21 @@ pub enum Finding {
         /// Number of such things.
         things: usize,
     },
+    /// A sphere so large that its surface is as rough, by rounding, as what is beside it.
+    Rough {
+        /// The sphere.
+        sphere: Origin,
+        /// Its diameter, metres.
+        across: f64,
+        /// What its surface is rounded to, metres.
+        rounding: f64,
+        /// The smallest thing beside it.
+        beside: Origin,
+        /// Extent of that, metres.
+        extent: f64,
+        /// Number of such things beside such spheres.
+        things: usize,
+    },
 }
 
 /// Everything of that kind in `world`; `pairs` are those that [`pairs`](super::contact::pairs) finds in it.
@@ -85,6 +101,7 @@ pub fn examine(world: &World, frame: &Frame, pairs: &[Pair]) -> Vec<Finding> {
     let mut found = turned::examine(world, frame);
     found.extend(thin::examine(world, frame, pairs));
     found.extend(coarse::examine(world, frame));
+    found.extend(rough::examine(world, frame));
     found
 }
 

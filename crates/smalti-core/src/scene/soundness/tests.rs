@@ -187,7 +187,14 @@ fn thin_panes_are_told() {
         let faces = turn(box_of(DVec3::ZERO, DVec3::new(1.0, thickness / 2.0, 1.0)), k);
         let moved = faces.into_iter().map(|face| face.into_iter().map(|v| v + DVec3::splat(900.0)).collect()).collect();
         as_mesh(&mut world, moved, GLASS, None);
-        world.spheres.push(Sphere { centre: -DVec3::splat(900.0), radius: 100.0, material: WHITE, radiance: None });
+        // Coordinates are finest where most of the details are.
+        let detail = |k: u32| Sphere {
+            centre: DVec3::new(f64::from(k), 0.0, 0.0) - DVec3::splat(900.0),
+            radius: 0.3,
+            material: WHITE,
+            radiance: None,
+        };
+        world.spheres.extend((0..60).map(detail));
         let found = found(&world);
         found.into_iter().find_map(|finding| match finding {
             Finding::Thin { thickness, steps, .. } => Some((thickness, steps)),
@@ -203,24 +210,29 @@ fn thin_panes_are_told() {
     }
 }
 
+/// A ball of 1 m on a planet, and two things of 1 m as far from each other as a planet is large.
 #[test]
-fn a_ball_on_a_planet_is_coarse() {
-    let on = |planet: f64| {
+fn what_is_large_beside_what_is_small_is_told() {
+    let ball = |z: f64, radius: f64| Sphere { centre: DVec3::Z * z, radius, material: WHITE, radiance: None };
+    let of = |spheres: &[Sphere]| {
         let mut world = world();
-        let ball = |z: f64, radius: f64| Sphere { centre: DVec3::Z * z, radius, material: WHITE, radiance: None };
-        world.spheres = vec![ball(-planet, planet), ball(0.5, 0.5)];
+        world.spheres = spheres.to_vec();
         found(&world)
     };
-    for planet in [1e5, 1e6, 1e8] {
-        let found = on(planet);
-        let [Finding::Coarse { surface, extent, largest, things, .. }] = found[..] else { panic!("{found:?}") };
-        assert_eq!((surface, extent, largest, things), (Origin::Sphere(1), 1.0, Origin::Sphere(0), 1));
+    for planet in [2e5, 1e6, 1e8] {
+        let found = of(&[ball(-planet, planet), ball(0.5, 0.5)]);
+        let [Finding::Rough { sphere, beside, extent, things, rounding, .. }] = found[..] else { panic!("{found:?}") };
+        assert_eq!((sphere, beside, extent, things), (Origin::Sphere(0), Origin::Sphere(1), 1.0, 1));
+        assert!((rounding / planet * f64::from(1u32 << 23) - 1.0).abs() < 0.01, "{rounding}");
+        let found = of(&[ball(-planet, 0.5), ball(0.5, 0.5)]);
+        assert!(matches!(found[..], [Finding::Coarse { extent: 1.0, things: 1, .. }]), "{found:?}");
     }
-    assert_eq!(on(1e3), []);
-    // A plane as large has its middle where the ball is, and coordinates enough there.
+    assert_eq!(of(&[ball(-1e3, 1e3), ball(0.5, 0.5)]), []);
+    assert_eq!(of(&[ball(-3e6, 1e6), ball(0.5, 0.5)]), [], "a planet in the sky");
+    // A plane as large has coordinates enough where the ball is.
     let mut world = world();
     let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| DVec3::new(1e6 * x, 1e6 * y, 0.0));
     as_polygons(&mut world, vec![corners.to_vec()], WHITE, None);
-    world.spheres = vec![Sphere { centre: DVec3::Z * 0.5, radius: 0.5, material: WHITE, radiance: None }];
+    world.spheres = vec![ball(0.5, 0.5)];
     assert_eq!(found(&world), []);
 }

@@ -45,6 +45,17 @@ impl Finding {
                     names.surface(b),
                 )
             }
+            Finding::Rough { sphere, across, rounding, beside, extent, things } => {
+                let more =
+                    if things > 1 { format!(" and {} more", counted(things - 1, "thing")) } else { String::new() };
+                format!(
+                    "{}, {across:.1e} m across, is rounded to {rounding:.1e} m, {:.0} of which are {} ({extent:.1e} m){more} \
+                     beside it: light and shadows there are wrong; a plane would do",
+                    names.surface(sphere),
+                    extent / rounding,
+                    names.surface(beside),
+                )
+            }
             Finding::Coarse { surface, extent, steps, largest, scene, things } => {
                 let more = if things > 1 { format!(", and {} more hardly more", things - 1) } else { String::new() };
                 format!(

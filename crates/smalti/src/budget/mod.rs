@@ -1,5 +1,7 @@
 //! When a render stops other than by its samples: `--time`, `--target-error`; and where its samples go: `--adaptive`.
 
+mod verdict;
+
 use std::time::{Duration, Instant};
 
 use rayon::ThreadPool;
@@ -9,10 +11,10 @@ use smalti_measure::{BiasStatement, ErrorStatement};
 use smalti_scheduler::{ADAPTIVE_TILE, Goal, Judgement, MOST_SAMPLES, Stopped, Target};
 
 use crate::args::BudgetArgs;
-use crate::describe::percent;
-use crate::error_statement::{self, SAMPLES_NEEDED};
+use crate::error_statement;
 use crate::frontend;
 use crate::names::QualityArg;
+pub use verdict::{Came, Spent};
 
 /// What a render may take, and what is wanted of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -71,39 +73,6 @@ impl Budget {
             noise: settings.adaptive.then_some(Box::new(noise) as _),
         }
     }
-
-    /// Whether what was wanted was reached by an image whose error is `at_most` so large.
-    pub fn is_reached(&self, stopped: Stopped, at_most: Option<f64>) -> bool {
-        match (stopped, self.error) {
-            (Stopped::Cancelled, _) => false,
-            (_, Some(error)) => at_most.is_some_and(|at_most| at_most <= error),
-            (stopped, None) => stopped != Stopped::Samples || self.time.is_none(),
-        }
-    }
-
-    /// What there is to say of an error that was asked for and not reached, though nobody stopped the render; `None` where
-    /// all is well.
-    pub fn shortfall(&self, stopped: Stopped, error: Option<&ErrorStatement>, at_most: Option<f64>) -> Option<String> {
-        let wanted = self.error.filter(|_| stopped != Stopped::Cancelled && !self.is_reached(stopped, at_most))?;
-        let spent = if stopped == Stopped::Time { "in --time" } else { "in --spp" };
-        let why = match (error, at_most) {
-            (None, _) => format!("too few samples {spent}: it takes {SAMPLES_NEEDED} a pixel to tell the error"),
-            (_, Some(at_most)) => format!("too few samples {spent}: the error is at most {}", percent(at_most)),
-            (Some(error), None) => unjudged(error),
-        };
-        Some(format!("the error of {} was not reached: {why}", percent(wanted)))
-    }
-}
-
-/// Why nobody can say what an error is at most.
-fn unjudged(error: &ErrorStatement) -> String {
-    let pixels = match error.uncertified_pixels {
-        0 => "there are too few samples".to_owned(),
-        1 => "1 pixel is too uncertain to judge".to_owned(),
-        pixels => format!("{pixels} pixels are too uncertain to judge"),
-    };
-    let low = percent(error.relative_error_low);
-    format!("{pixels}, so nobody can say what the error is at most; it is at least {low}")
 }
 
 fn closing(area: Rect) -> Duration {
@@ -144,26 +113,11 @@ pub fn name(stopped: Stopped) -> &'static str {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
+mod fixture {
+    use super::ErrorStatement;
 
-    const TIMED: Budget = Budget { time: Some(Duration::from_secs(1)), error: None, spp: None };
-    const JUDGED: Budget = Budget { time: None, error: Some(0.01), spp: None };
-
-    #[test]
-    fn what_was_wanted_is_reached_or_not() {
-        let (plain, both) = (Budget::default(), Budget { time: TIMED.time, ..JUDGED });
-        let reached = |budget: &Budget, stopped| budget.is_reached(stopped, Some(0.02));
-        assert!(reached(&plain, Stopped::Samples) && reached(&TIMED, Stopped::Time));
-        assert!(!reached(&plain, Stopped::Cancelled) && !reached(&TIMED, Stopped::Samples));
-        for stopped in [Stopped::Samples, Stopped::Time, Stopped::Cancelled] {
-            assert!(!both.is_reached(stopped, Some(0.02)) && !both.is_reached(stopped, None));
-            // Whoever stopped it: an error that is small enough is.
-            assert_eq!(both.is_reached(stopped, Some(0.01)), stopped != Stopped::Cancelled);
-        }
-    }
-
-    fn statement(relative_error_high: Option<f64>, uncertified_pixels: usize) -> ErrorStatement {
+    /// An error of 3 %, 2 % at least.
+    pub fn statement(relative_error_high: Option<f64>, uncertified_pixels: usize) -> ErrorStatement {
         ErrorStatement {
             relmse: 9e-4,
             relmse_low: 4e-4,
@@ -174,6 +128,12 @@ mod tests {
             uncertified_pixels,
         }
     }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::fixture::statement;
+    use super::*;
 
     #[test]
     fn noise_and_bias_add_up_in_squares() {
@@ -182,22 +142,6 @@ mod tests {
         assert!((at_most(Some(&known), Some(&bias)).unwrap() - 0.05).abs() < 1e-15);
         assert_eq!(at_most(Some(&known), None), Some(0.04));
         assert_eq!((at_most(Some(&statement(None, 3)), Some(&bias)), at_most(None, None)), (None, None));
-    }
-
-    #[test]
-    fn shortfalls_say_what_is_missing() {
-        let said = |stopped, error: Option<ErrorStatement>| {
-            JUDGED.shortfall(stopped, error.as_ref(), at_most(error.as_ref(), None)).unwrap_or_default()
-        };
-        let few = "the error of 1.000 % was not reached: too few samples in --time: the error is at most 4.000 %";
-        assert_eq!(said(Stopped::Time, Some(statement(Some(0.04), 0))), few);
-        let unjudged = said(Stopped::Samples, Some(statement(None, 3)));
-        assert!(unjudged.contains("3 pixels are too uncertain to judge, so nobody can say"), "{unjudged}");
-        assert!(unjudged.ends_with("at least 2.000 %"), "{unjudged}");
-        assert!(said(Stopped::Samples, None).contains("too few samples in --spp: it takes 32"));
-        assert_eq!(said(Stopped::Cancelled, None), "");
-        assert_eq!(said(Stopped::Samples, Some(statement(Some(0.01), 0))), "");
-        assert_eq!(TIMED.shortfall(Stopped::Time, None, None), None);
     }
 
     #[test]
