@@ -386,7 +386,8 @@ fn a_thin_tinted_pane_absorbs_by_its_thickness() {
             let tinted = Material::Dielectric { ior: 1.5, absorption: [0.5 / thickness; 3] };
             let (clear, black) = (material(&mut world, tinted), material(&mut world, grey(0.0)));
             put(&mut world, faces_of_box(at(-1.0, -1.0, 0.0), at(1.0, 1.0, thickness)), KINDS[k as usize % 2], clear);
-            put(&mut world, vec![square(1.0, -far).remove(0)], Kind::Quads, black);
+            let aside = square(1.0, -far).remove(0).into_iter().map(|corner| corner + DVec3::X * far).collect();
+            put(&mut world, vec![aside], Kind::Quads, black);
             camera(&mut world, at(0.02, 0.01, 3.0), at(0.02, 0.01, 0.0), 0.005);
             let world = elsewhere(&world, k);
             let whitted = Settings { integrator: Integrator::Whitted, ..settings(2, 2, 16) };

@@ -16,6 +16,9 @@ const OFF_FACES: f64 = 2.0;
 /// On a sphere they are known to so many only; rays that start nearer may be taken for inside or outside.
 const OFF_SPHERES: f64 = 6.0;
 
+/// Spheres with a gap of fewer steps are one: some rays would find the inner one, and some not.
+const LEAST_SHELL: f64 = 12.0;
+
 /// What touches in a scene.
 pub struct Touching {
     /// How far rays may start off each primitive, to the side of its normal and to the other; ∞ where nothing is near.
@@ -87,6 +90,9 @@ impl Touching {
 fn narrow(scene: &Scene, room: &mut [Vec<f32>; 2], prim: u32, pair: Pair) {
     let gap = pair.gap.abs();
     let is_sphere = prim as usize >= scene.faces.len();
+    if is_sphere && gap < LEAST_SHELL * pair.step {
+        return;
+    }
     let off = match is_sphere {
         true => (gap * PART).max(OFF_SPHERES * pair.step),
         false => (gap * PART).max(OFF_FACES * pair.step).min(gap / 2.0),
