@@ -40,6 +40,42 @@ pub fn room(number: u64) -> World {
     room.world
 }
 
+/// The scene file of a room.
+pub fn scene_file(world: &World) -> String {
+    let camera = &world.cameras[0];
+    let fov = camera.fov * 180.0 / PI;
+    let mut text = format!(
+        "[camera]\neye = {}\nlook_at = {}\nup = {}\nfov = {fov}\n\n[render]\nsize = [64, 64]\nspp = 64\n",
+        listed(camera.eye),
+        listed(camera.look_at),
+        listed(camera.up)
+    );
+    for (number, material) in world.materials.iter().enumerate() {
+        let kind = match material {
+            Material::Lambert { albedo } => format!("lambert = {{ albedo = {albedo:?} }}"),
+            Material::Mirror { reflectance } => format!("mirror = {{ reflectance = {reflectance:?} }}"),
+            Material::Dielectric { ior, .. } => format!("dielectric = {{ ior = {ior} }}"),
+        };
+        text += &format!("\n[material.m{number}]\n{kind}\n");
+    }
+    let emits = |radiance: Option<[f64; 3]>| radiance.map_or(String::new(), |x| format!("radiance = {x:?}\n"));
+    for polygon in &world.polygons {
+        let corners: Vec<String> = polygon.vertices.iter().map(|corner| listed(*corner)).collect();
+        let (corners, light) = (corners.join(", "), emits(polygon.radiance));
+        text += &format!("\n[[polygon]]\nmaterial = \"m{}\"\nvertices = [{corners}]\n{light}", polygon.material);
+    }
+    for ball in &world.spheres {
+        let (centre, light) = (listed(ball.centre), emits(ball.radiance));
+        let Sphere { radius, material, .. } = ball;
+        text += &format!("\n[[sphere]]\nmaterial = \"m{material}\"\ncentre = {centre}\nradius = {radius}\n{light}");
+    }
+    text
+}
+
+fn listed(place: DVec3) -> String {
+    format!("{:?}", place.to_array())
+}
+
 /// A room in the making; its floor is at height 0.
 struct Room {
     world: World,
@@ -148,6 +184,18 @@ mod tests {
             let radii = || rooms.clone().flat_map(|number| room(number).spheres).map(|ball| ball.radius);
             let [small, large] = [radii().fold(f64::INFINITY, f64::min), radii().fold(0.0, f64::max)];
             assert!(small < least && large > 0.1, "{small} to {large}");
+        }
+    }
+
+    #[test]
+    fn a_room_and_its_scene_file_are_the_same() {
+        let folder = tempfile::tempdir().expect("a folder");
+        for number in [0, 13, 29] {
+            let file = folder.path().join("room.toml");
+            std::fs::write(&file, scene_file(&room(number))).expect("it is written");
+            let read = smalti_scene::load(&file).expect("it is read").world;
+            assert_eq!(read.spheres, room(number).spheres, "room {number}");
+            assert_eq!(read.polygons, room(number).polygons, "room {number}");
         }
     }
 

@@ -16,3 +16,9 @@ pub mod sampling;
 pub mod scene;
 pub mod settings;
 pub mod stream;
+
+/// The version of the estimator: raised by whatever changes a sample of any render. Photon maps, studies, images and
+/// summaries carry it, as samples of two estimators must not be put together.
+///
+/// 1: until November 2026. 2: photons with radii of their own, frames about a scene's details, sampler purposes with room.
+pub const ESTIMATOR: u32 = 2;

@@ -74,7 +74,7 @@ impl Settings {
     /// Photons of a round and map: what was asked for, or a power of two that suits the size of the whole image.
     pub fn photons_of_round(&self) -> u32 {
         let pixels = f64::from(self.width) * f64::from(self.height);
-        let fitting = (pixels * PHOTONS_PER_PIXEL).clamp(16_384.0, 1_048_576.0) as u32;
+        let fitting = (pixels * PHOTONS_PER_PIXEL).clamp(32_768.0, 1_048_576.0) as u32;
         self.photons.unwrap_or(fitting.next_power_of_two())
     }
 

@@ -1,9 +1,11 @@
 //! Where files go: checked before rendering, replaced atomically after it.
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+
+use xxhash_rust::xxh3::xxh3_64;
 
 use crate::{Format, FormatError};
 
@@ -25,6 +27,12 @@ pub enum DestinationError {
     #[error("{}: is there already and is not a file", .path.display())]
     NotAFile {
         /// The destination.
+        path: PathBuf,
+    },
+    /// The file system has no such long names.
+    #[error("{}: the file name is too long: it has {} bytes, and most file systems take 255", .path.display(), length(.path))]
+    NameTooLong {
+        /// The file.
         path: PathBuf,
     },
     /// No file can be made in the folder.
@@ -59,8 +67,12 @@ pub fn check_place(path: &Path) -> Result<(), DestinationError> {
     if !folder.is_dir() {
         return Err(DestinationError::NoFolder { path: path.into(), folder: folder.into() });
     }
-    if target.exists() && !target.is_file() {
-        return Err(DestinationError::NotAFile { path: path.into() });
+    match fs::metadata(&target) {
+        Ok(there) if !there.is_file() => return Err(DestinationError::NotAFile { path: path.into() }),
+        Err(error) if error.kind() == io::ErrorKind::InvalidFilename => {
+            return Err(DestinationError::NameTooLong { path: path.into() });
+        }
+        Ok(_) | Err(_) => {}
     }
     let trial = temporary_of(&target);
     match create(&trial).and_then(|_| fs::remove_file(&trial)) {
@@ -118,11 +130,32 @@ fn folder_of(path: &Path) -> &Path {
 }
 
 /// `.NAME.PID.tmp` beside `path`: in the same folder, hence on the same disk, so that a rename suffices.
+///
+/// Where NAME is long, a piece of it and its hash stand for it: what the file system takes for the name it takes for
+/// this too.
 fn temporary_of(path: &Path) -> PathBuf {
-    let mut name = OsString::from(".");
-    name.push(path.file_name().unwrap_or_default());
-    name.push(format!(".{}.tmp", std::process::id()));
-    path.with_file_name(name)
+    let name = path.file_name().unwrap_or_default();
+    let ending = format!(".{}.tmp", std::process::id());
+    let mut temporary = OsString::from(".");
+    match 1 + name.len() + ending.len() <= ALWAYS_TAKEN.max(name.len()) {
+        true => temporary.push(name),
+        false => temporary.push(shortened(name)),
+    }
+    temporary.push(ending);
+    path.with_file_name(temporary)
+}
+
+/// Bytes of a name that every file system takes.
+const ALWAYS_TAKEN: usize = 64;
+
+fn shortened(name: &OsStr) -> String {
+    let piece: String = name.to_string_lossy().chars().filter(char::is_ascii_alphanumeric).take(20).collect();
+    format!("{piece}.{:016x}", xxh3_64(name.as_encoded_bytes()))
+}
+
+/// Bytes of the name of a file.
+fn length(path: &Path) -> usize {
+    path.file_name().unwrap_or_default().len()
 }
 
 /// Makes the rename last through a power cut, where folders can be synchronised; the file is in place in any case.
@@ -208,9 +241,32 @@ mod tests {
         assert!(matches!(check_destination(&at("no/a.png")), Err(DestinationError::NoFolder { .. })));
         fs::create_dir(at("folder.png")).unwrap();
         assert!(matches!(check_destination(&at("folder.png")), Err(DestinationError::NotAFile { .. })));
-        let too_long = format!("{}.png", "a".repeat(250));
-        assert!(matches!(check_destination(&at(&too_long)), Err(DestinationError::NotWritable { .. })));
+        let too_long = check_destination(&at(&format!("{}.png", "a".repeat(252)))).unwrap_err();
+        assert!(matches!(too_long, DestinationError::NameTooLong { .. }));
+        assert!(too_long.to_string().ends_with("it has 256 bytes, and most file systems take 255"), "{too_long}");
         assert_eq!(names(folder.path()), ["folder.png"]);
+    }
+
+    #[test]
+    fn a_long_name_is_a_good_name() {
+        let folder = tempfile::tempdir().unwrap();
+        for letter in ["a", "\u{e9}"] {
+            for length in [30, 60, 100, 246, 251] {
+                let name = letter.repeat(length / letter.len()) + ".png";
+                let path = folder.path().join(&name);
+                assert_eq!(check_destination(&path).unwrap(), Format::Png);
+                replace(&path, |file| file.write_all(b"new")).unwrap();
+                assert_eq!((fs::read(&path).unwrap(), names(folder.path())), (b"new".to_vec(), vec![name]));
+                assert!(length < 60 || super::length(&temporary_of(&path)) <= super::length(&path).max(64));
+                fs::remove_file(path).unwrap();
+            }
+        }
+    }
+
+    #[test]
+    fn long_names_that_begin_alike_do_not_share_a_temporary() {
+        let [a, b] = ["1", "2"].map(|end| temporary_of(Path::new(&format!("{}{end}.png", "a".repeat(240)))));
+        assert_ne!(a, b);
     }
 
     #[test]

@@ -1,13 +1,14 @@
 //! Reading and writing an image file of any known format.
 
-use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
 use smalti_core::film::Image;
 
+use crate::content::Content;
 use crate::destination::replace;
-use crate::{Format, FormatError, Provenance, exr, pfm, png, radiance};
+use crate::format::known;
+use crate::{Format, FormatError, Picture, Provenance, Windows, exr, pfm, png, radiance};
 
 /// An image that could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -36,7 +37,7 @@ pub enum WriteError {
 /// An image that could not be read.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
-    /// The file name says no known format.
+    /// Neither the content nor the file name says a known format.
     #[error(transparent)]
     Format(#[from] FormatError),
     /// The file cannot be opened or read.
@@ -52,15 +53,23 @@ pub enum ReadError {
     Broken {
         /// The file.
         path: PathBuf,
-        /// What the extension says that it is.
+        /// The format that it begins as, or else that of the extension.
         format: Format,
         /// What is wrong.
         what: String,
     },
+    /// The content is known and of no format that is read; nor is the extension.
+    #[error("{}: is {content}; images are read as {}", .path.display(), known())]
+    Other {
+        /// The file.
+        path: PathBuf,
+        /// What it holds, in words.
+        content: &'static str,
+    },
 }
 
-/// Writes `image` to `path` in the format of its extension, atomically: other programs see the old file or the whole
-/// new one.
+/// Writes `image`, a whole picture, to `path` in the format of its extension, atomically: other programs see the old
+/// file or the whole new one.
 ///
 /// PFM and EXR keep every bit; a PNG shows the image `exposure_ev` stops brighter (see [`tone_map`](crate::tone_map)),
 /// the linear formats ignore the exposure. HDR holds NaN and negative values as 0 and what exceeds 1.7e38 as that.
@@ -68,8 +77,22 @@ pub enum ReadError {
 /// # Errors
 /// An unknown extension, an image without pixels or of a size that its pixels do not fill, or what the system answers.
 pub fn write(path: &Path, image: &Image, provenance: &Provenance, exposure_ev: f32) -> Result<(), WriteError> {
+    write_part(path, image, Windows::whole(image.width, image.height), provenance, exposure_ev)
+}
+
+/// [`write()`] of an image that may be a part of a picture: EXR says which.
+///
+/// # Errors
+/// Those of [`write()`]; a data window of another size than the image.
+pub fn write_part(
+    path: &Path,
+    image: &Image,
+    windows: Windows,
+    provenance: &Provenance,
+    exposure_ev: f32,
+) -> Result<(), WriteError> {
     let format = Format::from_path(path)?;
-    let bytes = encode(format, image, provenance, exposure_ev)
+    let bytes = encode(format, image, windows, provenance, exposure_ev)
         .map_err(|Broken(what)| WriteError::Image { path: path.into(), what })?;
     replace(path, |file| io::Write::write_all(file, &bytes))
         .map_err(|error| WriteError::Io { path: path.into(), error })
@@ -78,33 +101,74 @@ pub fn write(path: &Path, image: &Image, provenance: &Provenance, exposure_ev: f
 /// The bytes of a PNG file as [`write()`] writes it, without provenance; `None` for an image without pixels or of a size that
 /// its pixels do not fill.
 pub fn encode_png(image: &Image, exposure_ev: f32) -> Option<Vec<u8>> {
-    encode(Format::Png, image, &Provenance::new(), exposure_ev).ok()
+    let windows = Windows::whole(image.width, image.height);
+    encode(Format::Png, image, windows, &Provenance::new(), exposure_ev).ok()
 }
 
-/// Reads the image at `path`, linear: a PNG is taken as sRGB.
+/// Reads the pixels of the image at `path`: [`read_picture`] without the rest.
 ///
 /// # Errors
-/// An unknown extension, a file that cannot be read, or content that is damaged or not of that format.
+/// Those of [`read_picture`].
 pub fn read(path: &Path) -> Result<Image, ReadError> {
-    let format = Format::from_path(path)?;
-    let bytes = fs::read(path).map_err(|error| ReadError::Io { path: path.into(), error })?;
-    decode(format, &bytes).map_err(|Broken(what)| ReadError::Broken { path: path.into(), format, what })
+    read_picture(path).map(|picture| picture.image)
 }
 
-fn encode(format: Format, image: &Image, provenance: &Provenance, exposure_ev: f32) -> Result<Vec<u8>, Broken> {
+/// Reads the image at `path`, linear: a PNG is taken as sRGB. The content tells the format, whatever the extension says.
+///
+/// # Errors
+/// A file that cannot be read, content that is damaged or of no format that is read.
+pub fn read_picture(path: &Path) -> Result<Picture, ReadError> {
+    let named = Format::from_path(path);
+    let bytes = match (fs::read(path), &named) {
+        (Ok(bytes), _) => bytes,
+        // A slip in the name is more likely than such a file.
+        (Err(error), Err(unknown)) if error.kind() == io::ErrorKind::NotFound => return Err(unknown.clone().into()),
+        (Err(error), _) => return Err(ReadError::Io { path: path.into(), error }),
+    };
+    let broken = |format| move |Broken(what)| ReadError::Broken { path: path.into(), format, what };
+    match Content::of(&bytes) {
+        Content::Image(format) => {
+            let mut picture = decode(format, &bytes).map_err(broken(format))?;
+            let is_plain =
+                named.map_or_else(|error| matches!(error, FormatError::Missing { .. }), |named| named == format);
+            if !is_plain {
+                picture
+                    .notes
+                    .insert(0, format!("its content is that of a .{} file, and is read as that", format.extension()));
+            }
+            Ok(picture)
+        }
+        Content::Other(content) => match named {
+            Ok(format) => Err(broken(format)(format!("it is {content}").into())),
+            Err(_) => Err(ReadError::Other { path: path.into(), content }),
+        },
+        Content::Unknown => {
+            let format = named?;
+            Err(broken(format)("it does not begin as one".into()))
+        }
+    }
+}
+
+fn encode(
+    format: Format,
+    image: &Image,
+    windows: Windows,
+    provenance: &Provenance,
+    exposure_ev: f32,
+) -> Result<Vec<u8>, Broken> {
     let pixels = u64::from(image.width) * u64::from(image.height);
-    if pixels == 0 || pixels != image.pixels.len() as u64 {
+    if pixels == 0 || pixels != image.pixels.len() as u64 || windows.data.size() != (image.width, image.height) {
         return Err(format!("{} × {} pixels, but {} values", image.width, image.height, image.pixels.len()).into());
     }
     match format {
         Format::Pfm => Ok(pfm::encode(image)),
-        Format::Png => Ok(png::encode(image, provenance, exposure_ev)?),
-        Format::Exr => Ok(exr::encode(image, provenance)?),
-        Format::Hdr => Ok(radiance::encode(image, provenance)?),
+        Format::Png => png::encode(image, provenance, exposure_ev),
+        Format::Exr => exr::encode(image, windows, provenance),
+        Format::Hdr => radiance::encode(image, provenance),
     }
 }
 
-fn decode(format: Format, bytes: &[u8]) -> Result<Image, Broken> {
+fn decode(format: Format, bytes: &[u8]) -> Result<Picture, Broken> {
     match format {
         Format::Pfm => pfm::decode(bytes),
         Format::Png => png::decode(bytes),
@@ -113,13 +177,20 @@ fn decode(format: Format, bytes: &[u8]) -> Result<Image, Broken> {
     }
 }
 
-/// What is wrong with the content of a file, or with an image that a file cannot hold.
-#[derive(Debug)]
+/// What is wrong with the content of a file, or with an image that a file cannot hold; in our words, not a library's.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
 pub(crate) struct Broken(String);
 
-impl<E: Display> From<E> for Broken {
-    fn from(error: E) -> Self {
-        Self(error.to_string())
+impl From<String> for Broken {
+    fn from(what: String) -> Self {
+        Self(what)
+    }
+}
+
+impl From<&str> for Broken {
+    fn from(what: &str) -> Self {
+        Self(what.into())
     }
 }
 
@@ -140,6 +211,7 @@ pub(crate) fn check_size(width: u32, height: u32, file_size: usize) -> Result<us
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use crate::Window;
 
     /// Different positive values of several magnitudes in every pixel.
     pub(crate) fn sample(width: u32, height: u32) -> Image {
@@ -162,6 +234,11 @@ pub(crate) mod tests {
         (image.width, image.height, image.pixels.as_flattened().iter().map(|value| value.to_bits()).collect())
     }
 
+    /// The bytes of a whole image without provenance.
+    pub(crate) fn encoded(format: Format, image: &Image) -> Result<Vec<u8>, Broken> {
+        encode(format, image, Windows::whole(image.width, image.height), &Provenance::new(), 0.0)
+    }
+
     #[test]
     fn every_format_is_written_and_read_by_its_extension() {
         let folder = tempfile::tempdir().unwrap();
@@ -169,20 +246,32 @@ pub(crate) mod tests {
         for format in Format::ALL {
             let path = folder.path().join("image").with_extension(format.extension());
             write(&path, &image, &Provenance::new(), 0.0).unwrap();
-            assert_eq!(read(&path).unwrap(), decode(format, &fs::read(&path).unwrap()).unwrap());
-            assert_eq!(read(&path).unwrap().width, 9);
+            let picture = read_picture(&path).unwrap();
+            assert_eq!(picture, decode(format, &fs::read(&path).unwrap()).unwrap());
+            assert_eq!((picture.image.width, picture.notes.len()), (9, 0));
         }
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), Format::ALL.len());
     }
 
     #[test]
+    fn a_part_keeps_its_place_in_formats_that_have_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let data = Window { x: 30, y: 20, width: 9, height: 4 };
+        let windows = Windows { data, display: Window::of_size(100, 80) };
+        for format in Format::ALL {
+            let path = folder.path().join("part").with_extension(format.extension());
+            write_part(&path, &sample(9, 4), windows, &Provenance::new(), 0.0).unwrap();
+            let expected = (format == Format::Exr).then_some(windows);
+            assert_eq!(read_picture(&path).unwrap().windows, expected);
+        }
+    }
+
+    #[test]
     fn a_png_in_memory_is_that_of_a_file() {
         let image = sample(9, 4);
-        let decoded = decode(Format::Png, &encode_png(&image, 1.0).unwrap()).unwrap();
-        assert_eq!(
-            decoded,
-            decode(Format::Png, &encode(Format::Png, &image, &Provenance::new(), 1.0).unwrap()).unwrap()
-        );
+        let windows = Windows::whole(9, 4);
+        let written = encode(Format::Png, &image, windows, &Provenance::new(), 1.0).unwrap();
+        assert_eq!(encode_png(&image, 1.0), Some(written));
         assert_eq!(encode_png(&Image::black(0, 4), 0.0), None);
     }
 
@@ -191,27 +280,76 @@ pub(crate) mod tests {
         let torn = Image { width: 2, height: 2, pixels: vec![[0.0; 3]; 3] };
         for format in Format::ALL {
             for image in [&Image::black(0, 4), &Image::default(), &torn] {
-                assert!(encode(format, image, &Provenance::new(), 0.0).is_err());
+                assert!(encoded(format, image).is_err());
             }
+            let (image, windows) = (sample(2, 2), Windows::whole(2, 1));
+            assert!(encode(format, &image, windows, &Provenance::new(), 0.0).is_err());
+        }
+    }
+
+    /// The answer to a file of this name and content.
+    fn read_as(name: &str, bytes: &[u8]) -> Result<Picture, String> {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join(name), bytes).unwrap();
+        let answer = |error: ReadError| error.to_string().rsplit('/').next().unwrap().to_owned();
+        read_picture(&folder.path().join(name)).map_err(answer)
+    }
+
+    #[test]
+    fn content_that_is_no_image_is_named() {
+        for format in Format::ALL {
+            let name = format!("image.{}", format.extension());
+            let message = |bytes: &[u8]| read_as(&name, bytes).unwrap_err();
+            let begin = format!("{name}: is no valid .{} file: ", format.extension());
+            assert_eq!(message(b"smalti smalti smalti\n"), format!("{begin}it is a text"));
+            assert_eq!(message(b""), format!("{begin}it is empty"));
+            assert_eq!(message(b"\xff\xd8\xff\xe0"), format!("{begin}it is a JPEG image"));
+            assert_eq!(message(b"\x80\x01\x02"), format!("{begin}it does not begin as one"));
+        }
+        let message = read_as("image.jpg", b"\xff\xd8\xff\xe0").unwrap_err();
+        assert_eq!(message, "image.jpg: is a JPEG image; images are read as .png, .exr, .pfm, .hdr");
+        assert!(read_as("image.pgn", b"\x80\x01\x02").unwrap_err().contains("perhaps '.png' was meant"));
+        let missing = read(Path::new("no such file.pgn")).unwrap_err().to_string();
+        assert!(missing.contains("perhaps '.png' was meant"), "{missing}");
+    }
+
+    #[test]
+    fn an_image_is_read_by_its_content() {
+        for format in Format::ALL {
+            let bytes = encoded(format, &sample(5, 4)).unwrap();
+            let expected = decode(format, &bytes).unwrap();
+            for name in ["image.png", "image.exr", "image.pfm", "image.hdr", "image.dat", "image"] {
+                let found = read_as(name, &bytes).unwrap();
+                assert_eq!(found.image, expected.image);
+                let is_plain = name == "image" || name.ends_with(format.extension());
+                assert_eq!(found.notes.is_empty(), is_plain, "{name}: {:?}", found.notes);
+            }
+            let cut = read_as("image.dat", &bytes[..bytes.len() / 2]).unwrap_err();
+            assert!(cut.contains(&format!("is no valid .{} file", format.extension())), "{cut}");
         }
     }
 
     #[test]
-    fn content_of_another_format_is_named() {
-        let folder = tempfile::tempdir().unwrap();
+    fn no_word_of_a_library_is_told() {
         for format in Format::ALL {
-            let path = folder.path().join("image").with_extension(format.extension());
-            fs::write(&path, b"smalti smalti smalti smalti\n").unwrap();
-            let error = read(&path).unwrap_err();
-            assert!(matches!(error, ReadError::Broken { .. }), "{error}");
-            assert!(error.to_string().contains(&format!("is no valid .{} file", format.extension())), "{error}");
+            let bytes = encoded(format, &sample(13, 9)).unwrap();
+            for at in 0..bytes.len() {
+                let mut damaged = bytes.clone();
+                damaged[at] ^= 0xff;
+                for bytes in [&bytes[..at], &damaged] {
+                    let Err(Broken(what)) = decode(format, bytes) else { continue };
+                    let words = ["its ", "it ", "a run ", "a line ", "the length ", "13 ×"];
+                    let is_ours = words.iter().any(|word| what.starts_with(word)) || what.ends_with("follow");
+                    assert!(is_ours && !what.contains("Error") && !what.contains('('), "{what}");
+                }
+            }
         }
     }
 
     #[test]
     fn damaged_files_do_not_panic() {
         for format in Format::ALL {
-            let bytes = encode(format, &sample(13, 9), &Provenance::new(), 0.0).unwrap();
+            let bytes = encoded(format, &sample(13, 9)).unwrap();
             for at in 0..bytes.len() {
                 for flip in [0x01, 0x10, 0x80, 0xff] {
                     let mut damaged = bytes.clone();

@@ -74,7 +74,8 @@ fn perhaps(nearest: &Option<&'static str>) -> String {
     nearest.map(|known| format!(" (perhaps '.{known}' was meant)")).unwrap_or_default()
 }
 
-fn known() -> String {
+/// The extensions that are known, in words.
+pub(crate) fn known() -> String {
     Format::ALL.map(|format| format!(".{}", format.extension())).join(", ")
 }
 

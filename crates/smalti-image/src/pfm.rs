@@ -2,6 +2,7 @@
 
 use smalti_core::film::Image;
 
+use crate::Picture;
 use crate::file::{Broken, check_size};
 
 /// Little-endian RGB with scale -1, every bit kept.
@@ -15,8 +16,8 @@ pub(crate) fn encode(image: &Image) -> Vec<u8> {
 }
 
 /// Reads `PF` (RGB) and `Pf` (grey) of either byte order; the size of the scale has no agreed meaning and is ignored.
-pub(crate) fn decode(bytes: &[u8]) -> Result<Image, Broken> {
-    let ([kind, width, height, scale], data) = header(bytes).ok_or("the header is incomplete")?;
+pub(crate) fn decode(bytes: &[u8]) -> Result<Picture, Broken> {
+    let ([kind, width, height, scale], data) = header(bytes).ok_or("its header is incomplete")?;
     let channels = match kind {
         "PF" => 3,
         "Pf" => 1,
@@ -26,6 +27,8 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Image, Broken> {
     let little_endian = number::<f32>(scale, "scale")?.is_sign_negative();
     let pixels = check_size(width, height, data.len())?;
     let expected = pixels.checked_mul(4 * channels).ok_or("it is too large")?;
+    // A header with the line ends of Windows has two bytes behind the last word.
+    let data = data.strip_prefix(b"\n").filter(|data| data.len() == expected).unwrap_or(data);
     if data.len() != expected {
         return Err(format!("{width} × {height} pixels take {expected} bytes, but {} follow", data.len()).into());
     }
@@ -33,7 +36,8 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Image, Broken> {
     let value = |b: &[u8]| f32::from_bits(if little_endian { u32_of(b).swap_bytes() } else { u32_of(b) });
     let pixel = |b: &[u8]| std::array::from_fn(|c| value(&b[4 * (c % channels)..][..4]));
     let rows = data.chunks_exact(row_bytes).rev();
-    Ok(Image { width, height, pixels: rows.flat_map(|row| row.chunks_exact(4 * channels)).map(pixel).collect() })
+    let pixels = rows.flat_map(|row| row.chunks_exact(4 * channels)).map(pixel).collect();
+    Ok(Image { width, height, pixels }.into())
 }
 
 /// The four words of the header, and what follows the one blank behind the last of them.
@@ -65,7 +69,7 @@ mod tests {
     #[test]
     fn keeps_every_bit() {
         for image in [sample(7, 5), extreme()] {
-            assert_eq!(bits(&decode(&encode(&image)).unwrap()), bits(&image));
+            assert_eq!(bits(&decode(&encode(&image)).unwrap().image), bits(&image));
         }
     }
 
@@ -81,7 +85,17 @@ mod tests {
     fn reads_grey_and_big_endian() {
         let mut file = b"Pf 2 1\n1.0\n".to_vec();
         file.extend([1.5f32, -2.0].iter().flat_map(|v| v.to_be_bytes()));
-        assert_eq!(decode(&file).unwrap().pixels, [[1.5; 3], [-2.0; 3]]);
+        assert_eq!(decode(&file).unwrap().image.pixels, [[1.5; 3], [-2.0; 3]]);
+    }
+
+    #[test]
+    fn a_header_may_have_the_line_ends_of_windows() {
+        let file = [b"Pf\r\n1 1\r\n-1.0\r\n".as_slice(), &1.5f32.to_le_bytes()].concat();
+        assert_eq!(decode(&file).unwrap().image.pixels, [[1.5; 3]]);
+        // A value may begin with the byte of a line end.
+        let value = f32::from_le_bytes([b'\n', 0, 0, 0x40]);
+        let file = [b"Pf\n1 1\n-1.0\n".as_slice(), &value.to_le_bytes()].concat();
+        assert_eq!(decode(&file).unwrap().image.pixels, [[value; 3]]);
     }
 
     #[test]

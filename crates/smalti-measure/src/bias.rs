@@ -13,6 +13,10 @@ use crate::compare::FLOOR;
 /// Side of the blocks of pixels that are taken as independent of each other; small images are cut in four by their width.
 const BLOCK: usize = 32;
 
+/// The upper end allows for this much more: of what is much smaller than a photon's disc, half of the disc has more than
+/// half of the bias. Of 30 random rooms the worst had 1.3 times the bias that the halves tell.
+const UNRESOLVED: f64 = 1.5;
+
 /// The two-sided 95 % quantile of the normal distribution.
 const Z: f64 = 1.959_963_984_540_054;
 
@@ -44,7 +48,7 @@ fn of_pixels(pixels: &[Shifted], width: u32) -> Option<BiasStatement> {
     let shift = pixels.iter().flat_map(|pixel| pixel.halves.as_flattened()).sum::<f64>();
     let found = BiasStatement {
         relative_bias: square.max(0.0).sqrt(),
-        relative_bias_high: high.max(0.0).sqrt(),
+        relative_bias_high: UNRESOLVED * high.max(0.0).sqrt(),
         // Twice the shift is the bias, and it is the mean of its halves.
         brightness: shift / (count * mean),
     };
@@ -113,14 +117,17 @@ mod tests {
         let found = of_pixels(&image(alternating, 0.02), 256).unwrap();
         let truth = 0.01 / 1.01f64.sqrt();
         assert!((found.relative_bias / truth - 1.0).abs() < 0.1, "{found:?}");
-        assert!(found.relative_bias_high > found.relative_bias && found.relative_bias_high < 1.3 * truth, "{found:?}");
+        assert!(
+            found.relative_bias_high > found.relative_bias && found.relative_bias_high < 1.3 * UNRESOLVED * truth,
+            "{found:?}"
+        );
         assert!(found.brightness.abs() < 1e-3);
     }
 
     #[test]
     fn noise_alone_is_no_bias() {
         let found = of_pixels(&image(|_| 0.0, 0.02), 256).unwrap();
-        assert!(found.relative_bias < 0.002 && found.relative_bias_high < 0.004, "{found:?}");
+        assert!(found.relative_bias < 0.002 && found.relative_bias_high < 0.004 * UNRESOLVED, "{found:?}");
     }
 
     #[test]

@@ -4,6 +4,7 @@
 mod bias;
 mod compare;
 mod interval;
+mod not_finite;
 mod relative;
 mod repetitions;
 mod statement;
@@ -11,6 +12,7 @@ mod timing;
 
 pub use bias::{BiasStatement, bias_statement};
 pub use compare::{CompareError, Comparison, PixelDifference, compare};
+pub use not_finite::{NotFinite, NotFinitePixel, not_finite};
 pub use repetitions::{Ends, REPETITIONS_FOR_INTERVAL, Repetitions, repetitions};
 pub use statement::{ErrorStatement, error_statement, noise};
 pub use timing::{efficiency, median, parallel_efficiency, quantile, speed_up};

@@ -23,7 +23,7 @@ pub struct Note {
 
 impl Note {
     /// Something good to know.
-    pub fn note(text: impl Into<String>) -> Self {
+    pub fn new(text: impl Into<String>) -> Self {
         Self { severity: Severity::Note, text: text.into() }
     }
 
@@ -55,7 +55,7 @@ mod tests {
 
     #[test]
     fn a_note_reads_with_its_severity() {
-        assert_eq!(Note::note("a").to_string(), "note: a");
+        assert_eq!(Note::new("a").to_string(), "note: a");
         assert_eq!(Note::warning("b").to_string(), "warning: b");
     }
 }

@@ -85,7 +85,7 @@ fn remove_clear(world: &mut World, places: &mut Places, names: &[&str], notes: &
     for (name, count) in names.iter().zip(removed).filter(|(_, count)| *count > 0) {
         let what = if count == 1 { "1 surface is".to_owned() } else { format!("{count} surfaces are") };
         let why = "has an index of exactly 1 and cannot be seen";
-        notes.push(Note::note(format!("material `{name}` {why}: {what} removed")));
+        notes.push(Note::new(format!("material `{name}` {why}: {what} removed")));
     }
 }
 

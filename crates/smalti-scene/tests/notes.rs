@@ -33,7 +33,7 @@ fn clear_surfaces_are_removed_unless_they_emit() {
     let loaded = alone(&air("1"));
     assert_eq!(counts(&loaded.world), [0, 1, 0]);
     let note = "material `air` has an index of exactly 1 and cannot be seen: 2 surfaces are removed";
-    assert_eq!(loaded.notes, [Note::note(note)]);
+    assert_eq!(loaded.notes, [Note::new(note)]);
     assert_eq!(counts(&alone(&air("1.0000001")).world), [1, 2, 0]);
 }
 
@@ -42,7 +42,7 @@ fn triangles_without_area_are_dropped_and_noted() {
     let mesh = "[[mesh]]\nmaterial = 'white'\nvertices = [[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0]]\n\
                 faces = [[0, 1, 2], [0, 1, 3]]\n";
     let loaded = alone(mesh);
-    assert_eq!(loaded.notes, [Note::note("mesh 1: 1 of 2 triangles have no area and are dropped")]);
+    assert_eq!(loaded.notes, [Note::new("mesh 1: 1 of 2 triangles have no area and are dropped")]);
     assert_eq!(loaded.world.meshes[0].faces, [[0, 1, 3]]);
 }
 

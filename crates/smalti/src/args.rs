@@ -323,8 +323,41 @@ Examples:
 The repetitions are interleaved (1, 2, 4, 1, 2, 4 ...), so that a machine that slows down slows all alike.
 Exit code 1 if the images of any two runs differ in a bit.";
 
+const COMPARE_NOTES: &str = "\
+Exit code 1 if a threshold is exceeded, or if a pixel that is not finite (NaN, infinite) in one of
+the images is not the same in both, with thresholds and without; else 0. Metrics are of the pixels
+that are finite in both.
+
+The content of a file tells its format, whatever its name says. EXR files are placed by their
+windows: a crop lies on its part of the whole, and the part that both hold is compared. An image of
+another format is placed as the whole picture of an EXR file if it has its size, or else on the
+pixels that it holds. Of an EXR file's layers the one without a name is read, or else the first one
+called Combined, or else the first in colour. Alpha is left out.
+
+The object of --json; what does not exist is null, and so are numbers that are not finite:
+  image, reference      the files
+  width, height         of what was compared
+  part                  x, y, width, height of that, if it is not plainly all of both
+  notes                 how the files were read and placed, in words
+  rmse                  root of the mean of (x - r)^2, over pixels and channels
+  relmse                mean of (x - r)^2 / (r^2 + 0.01)
+  relmse_trimmed        the same without the worst 0.1 % of the pixels
+  relative_error        root of the mean of (x - r)^2 / (r^2 + 0.01 m^2), m the mean of all r
+  mean_ratio            mean of the image by mean of the reference, for each channel
+  nonfinite_pixels      pixels that are not finite in one of the two: they are in no metric
+  nonfinite_image, nonfinite_reference, nonfinite_both
+                        how many are not finite there
+  nonfinite_alike       those of them that are the same in both
+  worst                 x, y, relmse, value, reference, nonfinite: null, or image, reference or both
+                        for pixels that are not finite and not the same, which come first; x and y
+                        count from 0, or as the windows of EXR files do
+  exceeded              thresholds that are exceeded: relmse, rmse
+  output                the difference picture
+  output_full_scale     the difference that has the last of its colours";
+
 /// Arguments of `smalti compare`.
 #[derive(Debug, Args)]
+#[command(after_help = COMPARE_NOTES)]
 pub struct CompareArgs {
     /// Image in question: .exr, .pfm, .hdr or .png
     pub image: PathBuf,

@@ -2,8 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use smalti_image::WriteError;
+use smalti_core::settings::{Rect, Settings};
+use smalti_image::{Window, Windows, WriteError};
 
+use crate::downsample;
 use crate::exit::Failure;
 
 /// Files to write, each possible as far as can be told; unless some were typed, the name of the scene with `ending`, here.
@@ -34,6 +36,15 @@ pub fn check_beside(outputs: &[PathBuf], other: Option<&Path>) -> Result<(), Fai
     }
 }
 
+/// Where the image of a render lies in the whole picture; `by` × `by` pixels of what `rendered` says became one of it.
+pub fn windows(rendered: &Settings, by: u32) -> Windows {
+    let image = downsample::image(rendered, by);
+    let Rect { x, y, width, height } = image.area();
+    // Sides are far below 2^31.
+    let data = Window { x: x as i32, y: y as i32, width, height };
+    Windows { data, display: Window::of_size(image.width, image.height) }
+}
+
 /// Writes every file that can be written and adds its name to `written`; an error names the others.
 pub fn write_all(
     outputs: &[PathBuf],
@@ -60,6 +71,17 @@ mod tests {
         assert_eq!(named("far/away/room.v2.toml", ".png"), Ok(vec!["room.v2.png".into()]));
         assert_eq!(named("far/away/room.toml", "-photons.png"), Ok(vec!["room-photons.png".into()]));
         assert!(named("..", ".png").is_err());
+    }
+
+    #[test]
+    fn a_crop_lies_in_the_whole_image() {
+        let crop = Some(Rect { x: 4, y: 6, width: 8, height: 10 });
+        let settings = Settings { width: 40, height: 20, crop, ..Settings::default() };
+        let data = Window { x: 4, y: 6, width: 8, height: 10 };
+        assert_eq!(windows(&settings, 1), Windows { data, display: Window::of_size(40, 20) });
+        let data = Window { x: 2, y: 3, width: 4, height: 5 };
+        assert_eq!(windows(&settings, 2), Windows { data, display: Window::of_size(20, 10) });
+        assert_eq!(windows(&Settings { crop: None, ..settings }, 1), Windows::whole(40, 20));
     }
 
     #[test]

@@ -8,6 +8,7 @@ use crate::summary::Summary;
 pub fn of(summary: &Summary) -> Provenance {
     let mut provenance = Provenance::new();
     provenance.push("version", summary.version);
+    provenance.push("estimator", summary.estimator);
     provenance.push("scene", &summary.scene);
     provenance.push("scene_hash", &summary.scene_hash);
     provenance.push("settings", &summary.settings);

@@ -15,6 +15,8 @@ use crate::job::Job;
 #[derive(Debug, Serialize)]
 pub struct Subject<'a> {
     pub version: &'static str,
+    /// The estimator: images of one are the same bit for bit, whatever the version.
+    pub estimator: u32,
     pub scene: String,
     pub scene_hash: &'a str,
     /// What is worth knowing and stops nothing, each a sentence.
@@ -27,6 +29,7 @@ pub struct Subject<'a> {
 pub fn subject(job: &Job) -> Subject<'_> {
     Subject {
         version: env!("CARGO_PKG_VERSION"),
+        estimator: smalti_core::ESTIMATOR,
         scene: job.path.display().to_string(),
         scene_hash: &job.scene_hash,
         notes: notes(job),

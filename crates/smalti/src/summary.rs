@@ -20,6 +20,8 @@ use crate::{budget, error_statement};
 #[derive(Debug, Serialize)]
 pub struct Summary {
     pub version: &'static str,
+    /// The estimator: images of one are the same bit for bit, whatever the version.
+    pub estimator: u32,
     pub scene: String,
     pub scene_hash: String,
     /// What is worth knowing about scene and settings and stops nothing, each a sentence.
@@ -137,6 +139,7 @@ pub fn summary(job: &Job, work: Work, outcome: &Outcome, developed: &Developed) 
     let idle = outcome.timing.idle();
     Summary {
         version: env!("CARGO_PKG_VERSION"),
+        estimator: smalti_core::ESTIMATOR,
         scene: job.path.display().to_string(),
         scene_hash: job.scene_hash.clone(),
         notes: record::notes(job),

@@ -1,11 +1,15 @@
 //! Is the light that is there in the picture, and is what renders state of their error true, in rooms of unlike scales?
 //!
 //! ```text
-//! rooms [--seeds 40] [--first 0] [--rooms 30] [--truth-spp 1024] [--path-spp 4096]
+//! rooms [--seeds 40] [--first 0] [--rooms 30] [--spp 64] [--photons N] [--truth-spp 1024] [--path-spp 4096] [--write FOLDER]
 //! ```
-//! Renders each random room (see `smalti_tests::rooms`) with `auto` at 64 × 64 pixels, 64 samples and default settings,
-//! many times, each time with another seed. The truth is a render by `auto` with many more samples and photons; its mean
-//! stands beside that of a render by `path`. Prints a line of CSV for each room.
+//! Renders each random room (see `smalti_tests::rooms`) with `auto` at 64 × 64 pixels, 64 samples and default settings
+//! (or others), many times, each time with another seed. The truth is a render by `auto` with many more samples and photons; its mean
+//! stands beside that of a render by `path`. Prints a line of CSV for each room. With `--write FOLDER` the rooms are
+//! written as scene files instead.
+
+use std::fs;
+use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
 use smalti_core::film::Film;
@@ -23,17 +27,28 @@ struct Arguments {
     seeds: u64,
     first: u64,
     rooms: u64,
+    spp: u32,
+    photons: Option<u32>,
     truth_spp: u32,
     path_spp: u32,
+    write: Option<PathBuf>,
 }
 
 fn main() -> Result<()> {
     let arguments = read()?;
+    let numbers = arguments.first..arguments.first + arguments.rooms;
+    if let Some(folder) = &arguments.write {
+        fs::create_dir_all(folder)?;
+        for number in numbers {
+            fs::write(folder.join(format!("room-{number}.toml")), rooms::scene_file(&room(number)))?;
+        }
+        return Ok(());
+    }
     println!(
         "room,decades,covered,open,above,median_high_by_true,true_error,stated,bias_high,mean_off,mean_se,\
          caustic_off,caustic_se,path_off,path_error"
     );
-    for number in arguments.first..arguments.first + arguments.rooms {
+    for number in numbers {
         let line = study(number, &arguments).with_context(|| format!("room {number}"))?;
         println!("{number},{},{line}", rooms::decades(number));
     }
@@ -41,7 +56,16 @@ fn main() -> Result<()> {
 }
 
 fn read() -> Result<Arguments> {
-    let mut read = Arguments { seeds: 40, first: 0, rooms: rooms::ROOMS, truth_spp: 1024, path_spp: 4096 };
+    let mut read = Arguments {
+        seeds: 40,
+        first: 0,
+        rooms: rooms::ROOMS,
+        spp: 64,
+        photons: None,
+        truth_spp: 1024,
+        path_spp: 4096,
+        write: None,
+    };
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         let value = words.next().with_context(|| format!("{word} needs a value"))?;
@@ -49,7 +73,10 @@ fn read() -> Result<Arguments> {
             "--seeds" => read.seeds = value.parse()?,
             "--first" => read.first = value.parse()?,
             "--rooms" => read.rooms = value.parse()?,
+            "--spp" => read.spp = value.parse()?,
+            "--photons" => read.photons = Some(value.parse()?),
             "--truth-spp" => read.truth_spp = value.parse()?,
+            "--write" => read.write = Some(value.into()),
             "--path-spp" => read.path_spp = value.parse()?,
             _ => bail!("unknown flag {word}"),
         }
@@ -88,7 +115,7 @@ fn study(number: u64, arguments: &Arguments) -> Result<String> {
     let is_caustic = |pixel: &f64| *pixel > CAUSTIC * brightness;
     let mut room = Room::default();
     for seed in 0..arguments.seeds {
-        let image = rendered(&world, auto(seed, 64))?;
+        let image = rendered(&world, Settings { photons: arguments.photons, ..auto(seed, arguments.spp) })?;
         let error = relative_error(&image.pixels, &truth.pixels, brightness);
         // The truth has noise of its own.
         let own = truth.error.relative_error;

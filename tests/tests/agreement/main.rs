@@ -4,6 +4,7 @@ mod adaptive;
 mod oracle;
 mod photons;
 mod primary;
+mod scales;
 mod scenes;
 mod settings;
 mod whitted;

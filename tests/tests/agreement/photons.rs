@@ -6,7 +6,7 @@
 use core::f64::consts::PI;
 
 use glam::DVec3;
-use smalti_core::photon::{Photons, Tag};
+use smalti_core::photon::{Photons, Quantity, Tag};
 use smalti_core::render::Renderer;
 use smalti_core::scene::world::Material;
 use smalti_core::scene::{Origin, World};
@@ -181,14 +181,15 @@ fn caustics_on_the_floor_have_the_oracles_flux() {
 /// Mean irradiance of a disc about the origin: it is gathered within a radius so small that it blurs little of the spot
 /// away.
 fn mean_irradiance(renderer: &Renderer, photons: &Photons, radius: f64) -> f64 {
-    let (map, surfaces) = (map_of(photons), &renderer.plan().photons.as_ref().unwrap().surfaces);
+    let surfaces = &renderer.plan().photons.as_ref().unwrap().surfaces;
+    let map = map_of(photons, surfaces, (0.01 * renderer.scene().frame.scale) as f32, Quantity::Radiance);
     let mut random = Random::new(62);
     let count = 4000;
     let mut at_random = || {
         let (from_middle, turn) = (radius * random.unit().sqrt(), 2.0 * PI * random.unit());
         let point = at(from_middle * libm::cos(turn), from_middle * libm::sin(turn), 0.0);
         let place = Place::on(renderer, Origin::Polygon(0), point, DVec3::Z);
-        irradiance((&map, 0, 99), surfaces, &place, (0.01 * renderer.scene().frame.scale) as f32)[0]
+        irradiance((&map, 0, 99), surfaces, &place)[0]
     };
     (0..count).map(|_| at_random()).sum::<f64>() / f64::from(count)
 }

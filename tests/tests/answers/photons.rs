@@ -1,9 +1,8 @@
 //! Photon maps, where the answer is known.
 
 use glam::DVec3;
-use smalti_core::photon::Quantity;
 use smalti_core::photon::pass::Pass;
-use smalti_core::photon::{Aim, Kind};
+use smalti_core::photon::{Aim, Kind, Quantity};
 use smalti_core::scene::world::Material;
 use smalti_core::scene::{Origin, World};
 use smalti_core::settings::{Integrator, Settings};

@@ -6,7 +6,7 @@ use glam::DVec3;
 use smalti_core::film::{Film, ROUND};
 use smalti_core::photon::maps::Pilots;
 use smalti_core::photon::pass::Pass;
-use smalti_core::photon::{Aim, Kind};
+use smalti_core::photon::{Aim, Kind, Quantity};
 use smalti_core::render::{Level, Renderer};
 use smalti_core::scene::{Origin, World};
 use smalti_core::settings::{Integrator, SamplerKind, Settings};
@@ -40,10 +40,11 @@ fn a_radius_blurs_by_its_square() {
     let radii = [0.15, 0.3, 0.6];
     let (rounds, mut sums, mut squares) = (32u32, [0.0; 3], [0.0; 3]);
     for round in 0..rounds {
-        let map = map_of(&trace(&renderer, &pass, 1 << 16, round).photons);
+        let traced = trace(&renderer, &pass, 1 << 16, round);
         for (k, radius) in radii.into_iter().enumerate() {
+            let map = map_of(&traced.photons, &photons.surfaces, (radius * scale) as f32, Quantity::Radiance);
             let place = Place::on(&renderer, Origin::Polygon(0), DVec3::ZERO, DVec3::Z);
-            let [found, ..] = irradiance((&map, 0, 0), &photons.surfaces, &place, (radius * scale) as f32);
+            let [found, ..] = irradiance((&map, 0, 0), &photons.surfaces, &place);
             sums[k] += found;
             squares[k] += found * found;
         }

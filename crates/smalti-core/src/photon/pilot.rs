@@ -17,7 +17,7 @@ use crate::lanes::{Lanes, V3};
 pub const PHOTONS: u32 = 1 << 15;
 
 /// Photons of a sub-map that are to reach a point in the first round.
-pub const WANTED: f32 = 4.0;
+pub const WANTED: f32 = 2.0;
 
 /// Photons of the whole map that are to reach a point where the map is what is seen.
 pub const SEEN: f32 = 48.0;

@@ -1,10 +1,15 @@
-//! `[[mesh]]`: triangles from a file (PLY, OBJ) or written out, transformed, and cleared of those without area.
+//! `[[mesh]]`: faces from a file (PLY, OBJ) or written out, cut into triangles, transformed, and cleared of those without
+//! area. What is not used of a file is counted.
 
+mod face;
 mod files;
 mod inline;
+mod kind;
 mod obj;
 mod ply;
 mod soup;
+mod tally;
+mod text;
 mod transform;
 
 use std::path::Path;
@@ -20,6 +25,7 @@ use crate::surface::{Skin, skin};
 use files::Files;
 pub use files::{Reading, Watch};
 use soup::{Flaw, Soup};
+use text::{Lines, shown, without_mark};
 
 const KEYS: &[Key] = &[
     key("material", "\"white\""),
@@ -46,7 +52,13 @@ pub fn read_all(
         let Skin { material, radiance } = skin(section, palette)?;
         let (name, mut soup) = soup(section, &mut files, index)?;
         transform::apply(section, &mut soup.vertices)?;
-        notes.extend(drop_degenerate(&name, &mut soup));
+        let found = soup.tally.notes(&name).into_iter().chain(drop_degenerate(&name, &mut soup));
+        // A file that is named twice has nothing new to say.
+        found.for_each(|note| {
+            if !notes.contains(&note) {
+                notes.push(note)
+            }
+        });
         meshes.push(Mesh { vertices: soup.vertices, faces: soup.faces, material, radiance });
     }
     Ok(meshes)
@@ -79,6 +91,10 @@ fn from_file(node: Node, folder: &Path) -> Result<Soup> {
     };
     let bytes = file::mesh_bytes(&path)
         .map_err(|(title, help)| Fault::at(node.span(), title, path.display().to_string()).maybe_help(help))?;
+    if let Some(stranger) = kind::stranger(&bytes, &extension) {
+        let title = format!("the mesh file is {}", stranger.is);
+        return Err(Fault::at(node.span(), title, path.display().to_string()).help(stranger.help));
+    }
     read(&bytes).map_err(|flaw| broken(node, &path, &bytes, flaw))
 }
 
@@ -96,13 +112,13 @@ fn broken(node: Node, path: &Path, bytes: &[u8], flaw: Flaw) -> Box<Fault> {
 
 /// Line number `line` (from 1), cut where it is longer than anyone reads.
 fn line_of(bytes: &[u8], line: usize) -> String {
-    let found = bytes.split(|byte| *byte == b'\n').nth(line - 1).unwrap_or_default();
-    String::from_utf8_lossy(&found[..found.len().min(100)]).trim_end().to_owned()
+    let found = Lines::new(without_mark(bytes), 1).nth(line - 1);
+    found.map_or(String::new(), |(_, text)| shown(text).trim_end().to_owned())
 }
 
 /// Drops triangles whose cross product of edges is zero or not finite: they cannot be hit. Says how many.
 fn drop_degenerate(name: &str, soup: &mut Soup) -> Option<Note> {
-    let Soup { vertices, faces } = soup;
+    let Soup { vertices, faces, .. } = soup;
     let all = faces.len();
     faces.retain(|face| {
         let [a, b, c] = face.map(|index| vertices[index as usize]);
@@ -110,7 +126,7 @@ fn drop_degenerate(name: &str, soup: &mut Soup) -> Option<Note> {
         cross.is_finite() && cross != glam::DVec3::ZERO
     });
     let dropped = all - faces.len();
-    (dropped > 0).then(|| Note::note(format!("{name}: {dropped} of {all} triangles have no area and are dropped")))
+    (dropped > 0).then(|| Note::new(format!("{name}: {dropped} of {all} triangles have no area and are dropped")))
 }
 
 #[cfg(test)]
@@ -122,7 +138,7 @@ mod tests {
     fn triangles_without_area_are_counted() {
         let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::X * 2.0, DVec3::Y, DVec3::X * 1e200, DVec3::Y * 1e200];
         let faces = vec![[0, 1, 3], [0, 1, 2], [1, 1, 3], [0, 4, 5]];
-        let mut soup = Soup { vertices, faces };
+        let mut soup = Soup { vertices, faces, ..Soup::default() };
         let note = drop_degenerate("`a.ply`", &mut soup).unwrap();
         assert_eq!(note.text, "`a.ply`: 3 of 4 triangles have no area and are dropped");
         assert_eq!(soup.faces, [[0, 1, 3]]);

@@ -1,59 +1,115 @@
-//! OBJ: the lines `v` and `f`; all others (normals, texture coordinates, groups, materials) say nothing that is used.
+//! OBJ: the lines `v` and `f`; all others (normals, texture coordinates, groups, materials) are counted and not used.
 //!
 //! Our own reader, because the crate `tobj` cannot say which line is wrong and refuses files for the normals that
 //! are not used here. The tests hold it against `tobj`.
 
+use std::borrow::Cow;
+use std::collections::BTreeSet;
+
 use glam::DVec3;
 
 use super::soup::{Flaw, MOST, Soup};
+use super::tally::{Content, Tally};
+use super::text::{Lines, parse, shown, without_mark, words};
 
 /// Reads an OBJ file; a face may refer to vertices further down.
 pub fn read(bytes: &[u8]) -> Result<Soup, Flaw> {
-    let text = String::from_utf8_lossy(bytes);
+    let bytes = without_mark(bytes);
     let mut soup = Soup::default();
-    for (line, words) in statements(&text, "v") {
-        soup.vertices.push(vertex(words).map_err(|wrong| Flaw::at(line, wrong))?);
-        if soup.vertices.len() > MOST {
-            return Err(Flaw::at(line, format!("more than {MOST} vertices")));
+    let mut names = BTreeSet::new();
+    for Statement { line, keyword, rest } in statements(bytes) {
+        match keyword {
+            b"v" => add_vertex(&mut soup, &rest).map_err(|wrong| Flaw::at(line, wrong))?,
+            b"f" | b"fo" => {}
+            b"usemtl" => drop(names.insert(rest.trim_ascii().to_vec())),
+            _ => soup.tally.add(content(keyword), 1),
         }
     }
-    faces(&text, &mut soup)?;
+    soup.tally.add(Content::Materials, names.len());
+    faces(bytes, &mut soup)?;
     if soup.faces.is_empty() {
-        return Err(Flaw::new("there is no face in it"));
+        return Err(Flaw::new(without_faces(&soup.tally)));
     }
     Ok(soup)
 }
 
-/// The lines that start with `keyword`: number and the words behind it.
-fn statements<'t>(text: &'t str, keyword: &'t str) -> impl Iterator<Item = (usize, &'t str)> {
-    text.lines().enumerate().filter_map(move |(index, line)| {
-        let rest = line.trim_start().strip_prefix(keyword)?;
-        rest.starts_with([' ', '\t']).then_some((index + 1, rest))
+/// A statement: its first line, its first word, and everything behind that.
+struct Statement<'t> {
+    line: usize,
+    keyword: &'t [u8],
+    rest: Cow<'t, [u8]>,
+}
+
+/// The statements that are no comments. A line that ends in `\` goes on in the next.
+fn statements(bytes: &[u8]) -> impl Iterator<Item = Statement<'_>> {
+    let mut lines = Lines::new(bytes, 1);
+    std::iter::from_fn(move || {
+        loop {
+            let (line, text) = lines.next()?;
+            let text = text.trim_ascii_start();
+            let length = text.iter().position(u8::is_ascii_whitespace).unwrap_or(text.len());
+            let (keyword, rest) = text.split_at(length);
+            if !keyword.is_empty() && !keyword.starts_with(b"#") {
+                return Some(Statement { line, keyword, rest: joined(rest, &mut lines) });
+            }
+        }
     })
 }
 
-fn vertex(words: &str) -> Result<DVec3, String> {
-    let mut words = words.split_ascii_whitespace();
-    let mut coordinate = || {
-        let word = words.next().ok_or("a vertex needs three coordinates")?;
-        let number: f64 = word.parse().map_err(|_| format!("`{word}` is not a number"))?;
-        if number.is_finite() { Ok(number) } else { Err(format!("the coordinate `{word}` is not finite")) }
-    };
-    Ok(DVec3::new(coordinate()?, coordinate()?, coordinate()?))
+/// A line with those that it goes on in. A backslash in a comment is part of the comment.
+fn joined<'t>(rest: &'t [u8], lines: &mut Lines<'t>) -> Cow<'t, [u8]> {
+    let goes_on = |line: &'t [u8]| line.trim_ascii_end().strip_suffix(b"\\").filter(|line| !line.contains(&b'#'));
+    let Some(start) = goes_on(rest) else { return Cow::Borrowed(rest) };
+    let mut whole = start.to_vec();
+    for (_, line) in lines {
+        whole.push(b' ');
+        let start = goes_on(line);
+        whole.extend(start.unwrap_or(line));
+        if start.is_none() {
+            break;
+        }
+    }
+    Cow::Owned(whole)
 }
 
-fn faces(text: &str, soup: &mut Soup) -> Result<(), Flaw> {
-    let mut vertex_lines = statements(text, "v").map(|(line, _)| line).peekable();
+/// The words behind a keyword, up to a comment.
+fn arguments(rest: &[u8]) -> impl Iterator<Item = &[u8]> {
+    words(rest).take_while(|word| !word.starts_with(b"#"))
+}
+
+fn add_vertex(soup: &mut Soup, rest: &[u8]) -> Result<(), String> {
+    if soup.vertices.len() == MOST {
+        return Err(format!("more than {MOST} vertices"));
+    }
+    let mut words = arguments(rest);
+    let mut coordinate = || coordinate(words.next().ok_or("a vertex needs three coordinates")?);
+    soup.vertices.push(DVec3::new(coordinate()?, coordinate()?, coordinate()?));
+    // Behind the coordinates stands a weight, or red, green and blue.
+    if words.nth(2).is_some() {
+        soup.tally.add(Content::Colours, 1);
+    }
+    Ok(())
+}
+
+fn coordinate(word: &[u8]) -> Result<f64, String> {
+    let number: f64 = parse(word).ok_or_else(|| format!("`{}` is not a number", shown(word)))?;
+    if number.is_finite() { Ok(number) } else { Err(format!("the coordinate `{}` is not finite", shown(word))) }
+}
+
+fn faces(bytes: &[u8], soup: &mut Soup) -> Result<(), Flaw> {
     let (mut before, mut corners) = (0, Vec::new());
-    for (line, words) in statements(text, "f") {
-        while vertex_lines.next_if(|vertex| *vertex < line).is_some() {
-            before += 1;
+    for Statement { line, keyword, rest } in statements(bytes) {
+        match keyword {
+            b"v" => before += 1,
+            b"f" | b"fo" => {
+                corners.clear();
+                for word in arguments(&rest) {
+                    corners.push(corner(word, before).map_err(|wrong| Flaw::at(line, wrong))?);
+                }
+                soup.add_face(&corners, 1).map_err(|wrong| Flaw::at(line, wrong))?;
+            }
+            _ => {}
         }
-        corners.clear();
-        for word in words.split_ascii_whitespace().take_while(|word| !word.starts_with('#')) {
-            corners.push(corner(word, before).map_err(|wrong| Flaw::at(line, wrong))?);
-        }
-        soup.add_face(&corners, 1).map_err(|wrong| Flaw::at(line, wrong))?;
         if soup.faces.len() > MOST {
             return Err(Flaw::at(line, format!("more than {MOST} triangles")));
         }
@@ -62,60 +118,38 @@ fn faces(text: &str, soup: &mut Soup) -> Result<(), Flaw> {
 }
 
 /// The vertex of `7`, `7/1`, `7//2` or `-1`, from 0; a negative one counts back from the `before` vertices above it.
-fn corner(word: &str, before: i64) -> Result<i64, String> {
-    let index = word.split('/').next().unwrap_or_default();
-    match index.parse::<i64>() {
-        Ok(0) => Err("vertices count from 1: there is no vertex 0".to_owned()),
-        Ok(index) if index > 0 => Ok(index - 1),
-        Ok(index) if index >= -before => Ok(before + index),
-        Ok(index) => Err(format!("vertex {index} is asked for, but only {before} stand above this line")),
-        Err(_) => Err(format!("`{word}` is not the number of a vertex")),
+fn corner(word: &[u8], before: i64) -> Result<i64, String> {
+    let index = word.split(|byte| *byte == b'/').next().unwrap_or_default();
+    match parse::<i64>(index) {
+        Some(0) => Err("vertices count from 1: there is no vertex 0".to_owned()),
+        Some(index) if index > 0 => Ok(index - 1),
+        Some(index) if index >= -before => Ok(before + index),
+        Some(index) => Err(format!("vertex {index} is asked for, but only {before} stand above this line")),
+        None => Err(format!("`{}` is not the number of a vertex", shown(word))),
+    }
+}
+
+/// What a statement other than `v`, `f` and `usemtl` holds.
+fn content(keyword: &[u8]) -> Content {
+    match keyword {
+        b"vn" => Content::Normals,
+        b"vt" => Content::TextureCoordinates,
+        b"g" | b"o" => Content::Groups,
+        b"l" => Content::Lines,
+        b"p" => Content::Points,
+        b"vp" | b"cstype" | b"deg" | b"bmat" | b"step" | b"curv" | b"curv2" | b"surf" | b"parm" | b"trim" | b"hole"
+        | b"scrv" | b"sp" | b"end" | b"con" => Content::Curves,
+        _ => Content::Statements,
+    }
+}
+
+fn without_faces(tally: &Tally) -> String {
+    match (tally.short, tally.unused()) {
+        (0, unused) if unused.is_empty() => "there is no face in it".to_owned(),
+        (0, unused) => format!("there is no face in it, only {unused}"),
+        _ => "none of its faces has three different corners".to_owned(),
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    const SOURCE: &str = "# a comment\no thing\r\nv 0 0 0\nv 1 0.5 0\n  v\t1 1 -1e-3\nvn 0 0 1\nvt 0 0\nv 0 1 0\n\
-                          f 1/1/1 2/1 3//1 4\nf -1 -2 -3\nl 1 2\nv 5 5 5\nf 5 1 2\nusemtl \u{fffd}\n";
-
-    #[test]
-    fn it_reads_what_tobj_reads() {
-        let options = tobj::LoadOptions { triangulate: true, ignore_lines: true, ..Default::default() };
-        let (models, _) =
-            tobj::load_obj_buf(&mut SOURCE.as_bytes(), &options, |_| Err(tobj::LoadError::ReadError)).unwrap();
-        let theirs: Vec<DVec3> = models
-            .iter()
-            .flat_map(|model| {
-                let at = |index: &u32| DVec3::from_slice(&model.mesh.positions[3 * *index as usize..]);
-                model.mesh.indices.iter().map(at).collect::<Vec<_>>()
-            })
-            .collect();
-        let ours = read(SOURCE.as_bytes()).unwrap();
-        assert_eq!(ours.faces, [[0, 1, 2], [0, 2, 3], [3, 2, 1], [4, 0, 1]]);
-        let corners: Vec<DVec3> = ours.faces.as_flattened().iter().map(|i| ours.vertices[*i as usize]).collect();
-        assert_eq!(corners, theirs);
-    }
-
-    #[test]
-    fn a_flaw_names_its_line() {
-        let cases = [
-            ("v 0 0\n", 1, "three coordinates"),
-            ("v 0 0 x\n", 1, "`x` is not a number"),
-            ("\nv 0 0 nan\n", 2, "not finite"),
-            ("v 0 0 0\nf 1 1 2\n", 2, "vertex 2, but they are numbered 1 to 1"),
-            ("v 0 0 0\nf 1 1 0\n", 2, "count from 1"),
-            ("v 0 0 0\nf 1 1 -2\n", 2, "only 1 stand above"),
-            ("v 0 0 0\nf 1 1\n", 2, "needs at least 3"),
-            ("v 0 0 0\nf 1 1 a\n", 2, "`a` is not the number"),
-        ];
-        for (text, line, words) in cases {
-            let flaw = read(text.as_bytes()).unwrap_err();
-            assert_eq!(flaw.line, Some(line), "{text}");
-            assert!(flaw.message.contains(words), "{} lacks {words}", flaw.message);
-        }
-        assert_eq!(read(b"v 0 0 0\n").unwrap_err().line, None);
-        assert_eq!(read(b"v 0 0 0\nf 1 1 1 # once\n").unwrap().faces, [[0; 3]]);
-    }
-}
+mod tests;

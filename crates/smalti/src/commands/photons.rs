@@ -7,7 +7,7 @@ use rayon::ThreadPool;
 use smalti_core::film::Film;
 use smalti_core::photon::Quantity;
 use smalti_core::render::Renderer;
-use smalti_image::{Format, WriteError};
+use smalti_image::{Format, Windows, WriteError};
 use smalti_scheduler::Outcome;
 
 use super::render;
@@ -43,7 +43,8 @@ pub fn run(args: &PhotonsArgs, colour: When, start: Instant) -> Result<Status, F
         let picture = develop(outcome.film.develop(), request.colour);
         outcome.film.tiles = Vec::new();
         let mut summary = summary(&request, work, &outcome, &picture, renderer.scene().frame.scale);
-        let written = write(&outputs, &picture, &mut summary, request.job.exposure(args.exposure));
+        let windows = outputs::windows(&request.job.settings, request.job.downsample);
+        let written = write(&outputs, (&picture, windows), &mut summary, request.job.exposure(args.exposure));
         summary.run.wall_seconds = start.elapsed().as_secs_f64();
         tell(args, &summary, messages)?;
         written?;
@@ -73,15 +74,20 @@ fn perform(
 }
 
 /// Writes every file that can be written; an error names the others.
-fn write(outputs: &[PathBuf], picture: &Picture, summary: &mut Summary, exposure: f32) -> Result<(), Failure> {
+fn write(
+    outputs: &[PathBuf],
+    (picture, windows): (&Picture, Windows),
+    summary: &mut Summary,
+    exposure: f32,
+) -> Result<(), Failure> {
     let start = Instant::now();
     let provenance = provenance(summary);
     let write = |path: &Path| -> Result<(), WriteError> {
         match &picture.coloured {
             Some((coloured, _)) if Format::from_path(path) == Ok(Format::Png) => {
-                smalti_image::write(path, coloured, &provenance, 0.0)
+                smalti_image::write_part(path, coloured, windows, &provenance, 0.0)
             }
-            _ => smalti_image::write(path, &picture.image, &provenance, exposure),
+            _ => smalti_image::write_part(path, &picture.image, windows, &provenance, exposure),
         }
     };
     let written = outputs::write_all(outputs, &mut summary.outputs, write);

@@ -6,6 +6,7 @@ use std::time::Instant;
 use rayon::ThreadPool;
 use smalti_core::film::{Film, Image};
 use smalti_core::render::Renderer;
+use smalti_image::Windows;
 use smalti_scheduler::{Goal, Outcome, Shelf, Watch, render_to};
 
 use crate::args::{ProgressArg, RenderArgs, When};
@@ -69,8 +70,10 @@ pub fn run(args: &RenderArgs, colour: When, start: Instant) -> Result<Status, Fa
         let mut summary = summary(&job, work, &outcome, &developed);
         summary.quality = quality;
         judge((&budget, spent), &outcome, &developed, &mut summary);
-        let written = write(&outputs, &developed, &mut summary, job.exposure(args.exposure));
-        let written = written.and(errors.map_or(Ok(()), |errors| write_errors(errors, &mut summary, messages)));
+        let windows = outputs::windows(&job.settings, job.downsample);
+        let written = write(&outputs, (&developed, windows), &mut summary, job.exposure(args.exposure));
+        let write_errors = |errors| write_errors(errors, windows, &mut summary, messages);
+        let written = written.and(errors.map_or(Ok(()), write_errors));
         summary.run.wall_seconds = start.elapsed().as_secs_f64();
         tell(args, &summary, messages)?;
         summary.shortfalls.iter().for_each(|text| messages.warning(text));
@@ -159,11 +162,16 @@ pub(super) fn interrupted(signal: i32, (least, most): (u32, u32), spp: Option<u3
 }
 
 /// Writes every file that can be written; an error names the others.
-fn write(outputs: &[PathBuf], developed: &Developed, summary: &mut Summary, exposure: f32) -> Result<(), Failure> {
+fn write(
+    outputs: &[PathBuf],
+    (developed, windows): (&Developed, Windows),
+    summary: &mut Summary,
+    exposure: f32,
+) -> Result<(), Failure> {
     let start = Instant::now();
     let provenance = provenance::of(summary);
     let written = outputs::write_all(outputs, &mut summary.outputs, |path| {
-        smalti_image::write(path, &developed.image, &provenance, exposure)
+        smalti_image::write_part(path, &developed.image, windows, &provenance, exposure)
     });
     summary.run.write_seconds = start.elapsed().as_secs_f64();
     summary.peak_bytes = memory::peak_bytes();
@@ -178,6 +186,7 @@ fn standard_errors(film: &Film, job: &Job) -> Option<Image> {
 /// Writes standard errors, if there are any.
 fn write_errors(
     (path, errors): (&Path, Option<Image>),
+    windows: Windows,
     summary: &mut Summary,
     messages: Messages,
 ) -> Result<(), Failure> {
@@ -188,7 +197,7 @@ fn write_errors(
     };
     let provenance = provenance::of(summary);
     outputs::write_all(&[path.into()], &mut summary.outputs, |path| {
-        smalti_image::write(path, &errors, &provenance, 0.0)
+        smalti_image::write_part(path, &errors, windows, &provenance, 0.0)
     })
 }
 

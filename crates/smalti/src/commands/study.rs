@@ -23,7 +23,7 @@ pub fn run(args: &StudyArgs, colour: When) -> Result<Status, Failure> {
     let tile = job.tile(common.work.tile);
     let plan = args.preset.plan(&scene, &job.world)?;
     plan.arms.iter().try_for_each(|arm| study::check(&arm.way))?;
-    let given = given(common, &plan)?;
+    let given = given(common, &plan, messages)?;
     let folder = Folder::checked(common.output.as_deref(), &common.scene, plan.preset)?;
     let question = study::question(&args.preset, &plan, &job, &scene, tile)?;
     let there = folder.open(&question, common.fresh)?;
@@ -62,11 +62,14 @@ fn own_way(job: &Job) -> Way {
     Way { image, downsample: 1, threads: study::cores() }
 }
 
-fn given(common: &CommonArgs, plan: &Plan) -> Result<Option<Vec<Truth>>, Failure> {
+fn given(common: &CommonArgs, plan: &Plan, messages: Messages) -> Result<Option<Vec<Truth>>, Failure> {
     let mut sizes: Vec<[u32; 2]> = plan.arms.iter().map(|arm| arm.way.size()).collect();
     sizes.sort_unstable();
     sizes.dedup();
-    common.reference.as_deref().map(|path| study::given(path, &sizes)).transpose()
+    let Some(path) = &common.reference else { return Ok(None) };
+    let (truths, notes) = study::given(path, &sizes)?;
+    notes.iter().for_each(|note| messages.note(note));
+    Ok(Some(truths))
 }
 
 /// Does what is missing of a study; returns it with what is told of it.

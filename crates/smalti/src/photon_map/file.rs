@@ -12,7 +12,9 @@ use smalti_core::photon::maps::{Kept, Pilots};
 use smalti_core::settings::Settings;
 use xxhash_rust::xxh3::xxh3_64;
 
-const MAGIC: &[u8] = b"smalti photon map 1\n";
+const MAGIC: &[u8] = b"smalti photon map 2\n";
+/// The part of [`MAGIC`] that files of other formats share.
+const NAME: &[u8] = b"smalti photon map ";
 /// The chunk of what was sent ahead; rounds have their numbers.
 const AHEAD: u32 = u32::MAX;
 /// The chunk at the end.
@@ -23,8 +25,10 @@ const CHUNK: usize = 20;
 /// What the photons in a file depend on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Header {
-    /// The version that traced them: another may trace others.
+    /// The version that traced them.
     pub version: String,
+    /// The estimator that traced them: another traces others.
+    pub estimator: u32,
     pub scene_hash: String,
     pub integrator: String,
     /// Photons of a round and map.
@@ -44,6 +48,7 @@ impl Header {
     pub fn new(scene_hash: &str, settings: &Settings) -> Self {
         Self {
             version: env!("CARGO_PKG_VERSION").into(),
+            estimator: smalti_core::ESTIMATOR,
             scene_hash: scene_hash.into(),
             integrator: settings.integrator.name().into(),
             photons: settings.photons_of_round(),
@@ -60,6 +65,7 @@ impl Header {
     fn difference(&self, asked: &Self) -> Option<String> {
         let pairs = [
             ("version of smalti", self.version.clone(), asked.version.clone()),
+            ("estimator", self.estimator.to_string(), asked.estimator.to_string()),
             ("scene (by its hash)", self.scene_hash.clone(), asked.scene_hash.clone()),
             ("integrator", self.integrator.clone(), asked.integrator.clone()),
             ("number of photons", self.photons.to_string(), asked.photons.to_string()),
@@ -88,6 +94,9 @@ pub enum FileError {
     /// It begins otherwise.
     #[error("is no photon map of smalti")]
     Foreign,
+    /// It is of another format.
+    #[error("is a photon map of an older or newer smalti, whose photons do not fit. Delete it, and it is made anew")]
+    OtherFormat,
     /// Bytes are missing or changed.
     #[error("is damaged: {0}. Delete it, and it is made anew")]
     Damaged(&'static str),
@@ -105,6 +114,7 @@ fn header_of(file: &mut File) -> Result<Header, FileError> {
     let mut magic = [0; MAGIC.len()];
     match file.read_exact(&mut magic) {
         Ok(()) if magic == *MAGIC => {}
+        Ok(()) if magic.starts_with(NAME) => return Err(FileError::OtherFormat),
         Err(error) if error.kind() != io::ErrorKind::UnexpectedEof => return Err(error.into()),
         _ => return Err(FileError::Foreign),
     }

@@ -15,6 +15,8 @@ use crate::reproduce;
 #[derive(Debug, Serialize)]
 pub struct Summary {
     pub version: &'static str,
+    /// The estimator: images of one are the same bit for bit, whatever the version.
+    pub estimator: u32,
     pub scene: String,
     pub scene_hash: String,
     /// What is worth knowing about scene and settings and stops nothing, each a sentence.
@@ -85,6 +87,7 @@ pub fn summary(request: &Request, work: Work, outcome: &Outcome, picture: &Pictu
     let settings = &job.settings;
     Summary {
         version: env!("CARGO_PKG_VERSION"),
+        estimator: smalti_core::ESTIMATOR,
         scene: job.path.display().to_string(),
         scene_hash: job.scene_hash.clone(),
         notes: record::notes(job),

@@ -114,6 +114,7 @@ impl Performance<'_> {
     fn keep_image(&self, arm: &mut Arm, rendered: &Rendered, run: &Run) -> Result<(), Failure> {
         let mut provenance = Provenance::new();
         provenance.push("version", env!("CARGO_PKG_VERSION"));
+        provenance.push("estimator", smalti_core::ESTIMATOR);
         provenance.push("scene_hash", &self.bench.job.scene_hash);
         provenance.push("hash", &run.hash);
         provenance.push("reproduce", &arm.command);

@@ -30,6 +30,7 @@ pub fn of(preset: &Preset, plan: &Plan, job: &Job, scene: &Way, tile: u32) -> Re
     let others = [
         ("preset", value(&plan.preset)),
         ("version", value(&env!("CARGO_PKG_VERSION"))),
+        ("estimator", value(&smalti_core::ESTIMATOR)),
         ("scene", value(&job.scene_hash)),
         ("camera", value(&job.camera())),
         ("seed", value(&scene.image.seed)),

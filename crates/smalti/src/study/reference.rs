@@ -124,18 +124,21 @@ fn record(size: [u32; 2], command: Option<String>, error: Option<ErrorStatement>
     }
 }
 
-/// The references in a file that was given, down-sampled where the images are smaller.
+/// The references in a file that was given, down-sampled where the images are smaller. Of an EXR file with overscan the
+/// display window counts. With them what is good to know of how the file was read.
 ///
 /// # Errors
 /// A file that is no image, or of another size.
-pub fn given(path: &Path, sizes: &[[u32; 2]]) -> Result<Vec<Truth>, Failure> {
-    let image = smalti_image::read(path).map_err(Failure::user)?;
+pub fn given(path: &Path, sizes: &[[u32; 2]]) -> Result<(Vec<Truth>, Vec<String>), Failure> {
+    let picture = smalti_image::read_picture(path).map_err(Failure::user)?;
+    let notes = picture.named_notes(path);
+    let image = picture.shown();
     let whole = [image.width, image.height];
     let of_size = |size: &[u32; 2]| {
         let by = factor(whole, *size).ok_or_else(|| misfit(path, whole, *size))?;
         Ok(Truth { record: record(*size, None, None), image: image.clone().downsampled(by) })
     };
-    sizes.iter().map(of_size).collect()
+    Ok((sizes.iter().map(of_size).collect::<Result<_, _>>()?, notes))
 }
 
 fn misfit(path: &Path, [width, height]: [u32; 2], small: [u32; 2]) -> Failure {
@@ -175,6 +178,8 @@ pub fn needed(noise: f64, family: &Family, best: &[Option<f64>]) -> u32 {
 
 #[cfg(test)]
 mod tests {
+    use smalti_image::{Window, Windows};
+
     use super::*;
     use crate::study::combine::tests::base;
 
@@ -212,12 +217,25 @@ mod tests {
     }
 
     #[test]
+    fn overscan_is_no_part_of_a_given_reference() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("truth.exr");
+        let image = Image { width: 4, height: 1, pixels: (0..4u8).map(|n| [f32::from(n); 3]).collect() };
+        let data = Window { x: -1, y: 0, width: 4, height: 1 };
+        let windows = Windows { data, display: Window::of_size(2, 1) };
+        smalti_image::write_part(&path, &image, windows, &Provenance::new(), 0.0).unwrap();
+        assert_eq!(given(&path, &[[2, 1]]).unwrap().0[0].image.pixels, [[1.0; 3], [2.0; 3]]);
+        assert!(given(&path, &[[4, 1]]).is_err());
+    }
+
+    #[test]
     fn a_given_reference_must_fit() {
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("truth.pfm");
         let image = Image { width: 4, height: 2, pixels: (0..8u8).map(|n| [f32::from(n); 3]).collect() };
         smalti_image::write(&path, &image, &Provenance::new(), 0.0).unwrap();
-        let truths = given(&path, &[[4, 2], [2, 1]]).unwrap();
+        let (truths, notes) = given(&path, &[[4, 2], [2, 1]]).unwrap();
+        assert!(notes.is_empty());
         assert_eq!((&truths[0].image, truths[1].image.pixels.as_slice()), (&image, &[[2.5; 3], [4.5; 3]][..]));
         let message = given(&path, &[[3, 2]]).unwrap_err().message;
         assert!(message.contains("4x2 pixels") && message.contains("3x2"), "{message}");

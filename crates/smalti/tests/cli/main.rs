@@ -3,6 +3,7 @@
 mod budget;
 mod doctor;
 mod images;
+mod meshes;
 mod mistakes;
 mod notes;
 mod photon_map;
