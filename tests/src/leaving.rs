@@ -45,8 +45,7 @@ pub fn from_tetrahedron(hits: u32, random: &mut Random) -> Result<Left, String> 
     let mut left = Left::default();
     for _ in 0..hits {
         let goal = inside_of(&scene, 6..10, random);
-        let from = random.cube() * 0.9;
-        let Some((hit, prim)) = shaded(&scene, &accel, from, goal) else { continue };
+        let Some((hit, prim)) = shaded(&scene, &accel, in_room(&scene, random), goal) else { continue };
         if !solid(prim) || !hit.outside {
             continue;
         }
@@ -77,7 +76,7 @@ pub fn from_sphere(hits: u32, random: &mut Random) -> Result<Left, String> {
     let mut left = Left::default();
     for _ in 0..hits {
         let goal = at(x, y, z) + random.cube() * r * 0.57;
-        let Some((hit, 6)) = shaded(&scene, &accel, random.cube() * 0.9, goal) else { continue };
+        let Some((hit, 6)) = shaded(&scene, &accel, in_room(&scene, random), goal) else { continue };
         let normal = vector(hit.normal);
         for _ in 0..10 {
             let direction = outward(random, normal);
@@ -162,6 +161,15 @@ fn room(random: &mut Random, solid: impl FnOnce(&mut World, DVec3, &mut Random))
     closed_box(&mut world, DVec3::ZERO, DVec3::splat(half), white, None);
     let away = random.cube() * 1e3;
     compile(&world.placed(scale, |v| (v + away) * scale), false)
+}
+
+/// A point of the room, in the frame, not at its walls: the first six faces.
+fn in_room(scene: &Scene, random: &mut Random) -> DVec3 {
+    let corners = (0..6)
+        .map(|wall| scene.bounds(wall))
+        .map(|ends| [ends.0, ends.1].map(|end| DVec3::from_array(end.map(f64::from))));
+    let [low, high] = corners.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]).expect("six walls");
+    (low + high) / 2.0 + random.cube() * 0.45 * (high - low)
 }
 
 /// A point inside the hull of some faces' corners.

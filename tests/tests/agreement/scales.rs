@@ -73,10 +73,10 @@ fn a_caustic_in_a_hall_converges_with_photons() {
     }
 }
 
-/// Rooms in which `path` finds the light: their means agree, and those of the pixels of their caustics.
+/// Rooms with a lamp so large that `path` finds its caustics: their means agree, and those of the pixels of caustics.
 #[test]
 fn rooms_of_unlike_scales_are_as_bright_as_by_paths() {
-    for number in [3, 6] {
+    for number in [1, 3] {
         let world = room(number);
         let path = render(&world, &settings(64, 64, 2048));
         let bright: Vec<usize> =

@@ -13,14 +13,15 @@ use smalti_tests::build::{closed_box, grey, material, sphere};
 use smalti_tests::draw::{Way, draw, renderer, scene};
 use smalti_tests::oracle::Random;
 
-/// More triangles than a list takes, in a corner of the room's box that lies outside of its walls.
+/// More triangles than a list takes, in two corners of the room's box that lie outside of its walls: as many in each, so
+/// that the middle of the details, and with it the frame, stays where it is.
 fn hidden() -> Vec<[DVec3; 3]> {
-    let corner = DVec3::new(-2.9, -5.9, 0.0);
-    let triangle = |i: usize| {
-        let low = corner + DVec3::Z * (i as f64 * 0.01);
-        [low, low + DVec3::X * 0.1, low + DVec3::Y * 0.1]
+    let middle = DVec3::new(5.0, 0.0, 0.0);
+    let pair = |i: usize| {
+        let low = DVec3::new(-7.9, -5.9, -4.9 + i as f64 * 0.01);
+        [1.0, -1.0].map(|side| [low, low + DVec3::X * 0.1, low + DVec3::Y * 0.1].map(|at| middle + at * side))
     };
-    (0..=LIST_UP_TO).map(triangle).collect()
+    (0..=LIST_UP_TO / 2).flat_map(pair).collect()
 }
 
 /// The room with the hidden triangles in a mesh (then its own mesh is in a tree as well), or as polygons (then all is).

@@ -171,7 +171,7 @@ fn no_flux_is_lost_or_made_where_radii_change() {
         })
         .sum();
     let found = sum / f64::from(steps * steps);
-    assert!((found / total - 1.0).abs() < 2e-3, "{found} of {total} arrive");
+    assert!((found / total - 1.0).abs() < 4e-3, "{found} of {total} arrive");
 }
 
 /// Walls in the plane z = 0, each with the primitive that is lit from above and the one that is dark from below.

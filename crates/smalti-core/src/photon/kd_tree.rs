@@ -133,19 +133,17 @@ impl Tree {
         l.add_u(node, l.add_u(!leaves, l.u(1)))
     }
 
+    /// About how much area all photons lie on.
+    pub fn area(&self) -> f32 {
+        area((0..self.blocks.len() * BLOCK).filter_map(|number| self.photon(number)).map(|(place, _)| place))
+    }
+
     /// Photons of a leaf, their flux (brightest channel), and about how much area they lie on.
     pub fn spread_of(&self, leaf: usize) -> (usize, f32, f32) {
         let photons = (leaf * BLOCK..(leaf + 1) * BLOCK).filter_map(|number| self.photon(number));
         let (places, fluxes): (Vec<[f32; 4]>, Vec<[f32; 4]>) = photons.unzip();
         let flux = fluxes.iter().map(|[r, g, b, _]| r.max(*g).max(*b)).sum();
-        let extent = |k: usize| {
-            let along = || places.iter().map(|place| place[k]);
-            along().fold(f32::NEG_INFINITY, f32::max) - along().fold(f32::INFINITY, f32::min)
-        };
-        let [x, y, z] = [extent(0), extent(1), extent(2)];
-        let area = ((x * y) * (x * y) + (y * z) * (y * z) + (z * x) * (z * x)).sqrt();
-        // Photons along a line lie on an area too.
-        (places.len(), flux, area.max(x.max(y).max(z) * x.max(y).max(z) / BLOCK as f32))
+        (places.len(), flux, area(places.into_iter()))
     }
 
     /// Whether it is a tree of photons on the primitives below `prims`: what walks through it goes nowhere else.
@@ -161,6 +159,16 @@ impl Tree {
     pub fn bytes(&self) -> u64 {
         (size_of_val(&self.splits[..]) + size_of_val(&self.blocks[..]) + size_of_val(&self.flux[..])) as u64
     }
+}
+
+/// About how much area photons lie on: that of their box. Photons along a line lie on an area too.
+fn area(places: impl Iterator<Item = [f32; 4]>) -> f32 {
+    let nothing = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
+    let [low, high] = places.map(|[x, y, z, _]| [[x, y, z]; 2]).fold(nothing, around);
+    let [x, y, z] = [0, 1, 2].map(|k: usize| (high[k] - low[k]).max(0.0));
+    let longest = x.max(y).max(z);
+    let flat = ((x * y) * (x * y) + (y * z) * (y * z) + (z * x) * (z * x)).sqrt();
+    flat.max(longest * longest / BLOCK as f32)
 }
 
 /// Leaves left of the root of a heap with `count` > 1 leaves.

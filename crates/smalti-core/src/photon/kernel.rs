@@ -33,33 +33,41 @@ pub struct Kernels<'a> {
     pub surfaces: &'a Surfaces,
     /// Radii by those of the first round.
     pub shrink: f32,
-    /// The camera's view: nothing smaller than its pixels is to be seen.
+    /// The views: nothing smaller than their pixels is to be seen.
     pub footprint: Footprint,
     /// The quantity that photons are to bring: their flux, or their number.
     pub quantity: Quantity,
 }
 
-/// The size of a pixel, by place.
-#[derive(Clone, Copy, Debug, Default)]
+/// The size of a pixel, by place: that of the camera in which it is smallest, as photon maps serve all cameras.
+#[derive(Clone, Debug, Default)]
 pub struct Footprint {
-    /// The pinhole.
-    pub eye: [f32; 3],
-    /// Radius by distance from there.
-    pub by_distance: f32,
+    /// For each camera its pinhole, and the radius by distance from there; none: no least radius.
+    cameras: Vec<([f32; 3], f32)>,
 }
 
 impl Footprint {
-    /// Of a view in pictures of so many rows.
-    pub fn new(view: &View, rows: u32) -> Self {
-        let half_height = view.up.map(f64::from).map(|x| x * x).iter().sum::<f64>().sqrt();
-        Self { eye: view.eye, by_distance: (PIXELS * 2.0 * half_height / f64::from(rows.max(1))) as f32 }
+    /// Of these views in pictures of so many rows.
+    pub fn new(views: &[View], rows: u32) -> Self {
+        let camera = |view: &View| {
+            let half_height = view.up.map(f64::from).map(|x| x * x).iter().sum::<f64>().sqrt();
+            (view.eye, (PIXELS * 2.0 * half_height / f64::from(rows.max(1))) as f32)
+        };
+        Self { cameras: views.iter().map(camera).collect() }
     }
 
     /// The least radius in the first round at each point of a packet.
     #[inline(always)]
     fn radius<L: Lanes>(&self, l: L, point: V3<L>) -> L::F {
-        let away = point - V3::splat(l, self.eye);
-        l.sqrt(away.dot(l, away)) * l.f(self.by_distance)
+        if self.cameras.is_empty() {
+            return l.f(0.0);
+        }
+        let mut least = l.f(f32::INFINITY);
+        for (eye, by_distance) in &self.cameras {
+            let away = point - V3::splat(l, *eye);
+            least = l.min(least, l.sqrt(away.dot(l, away)) * l.f(*by_distance));
+        }
+        least
     }
 }
 

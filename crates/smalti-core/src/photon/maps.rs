@@ -181,7 +181,7 @@ impl Renderer {
         let quantity = self.plan().quantity();
         let footprint = match self.settings().radius {
             Some(_) => Footprint::default(),
-            None => Footprint::new(&self.scene().views[self.settings().camera], self.settings().height),
+            None => Footprint::new(&self.scene().views, self.settings().height),
         };
         let kernels = surfaces.map(|surfaces| Kernels { pilot, surfaces, shrink: shrink(round), footprint, quantity });
         let trees = self.plan().trees(self.settings());

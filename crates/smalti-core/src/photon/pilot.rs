@@ -93,6 +93,9 @@ impl Pilot {
 /// Radius and expectation about the photons of a leaf.
 fn region(tree: &Tree, leaf: usize, target: Target, radius: Option<f32>) -> [f32; 2] {
     let (photons, flux, area) = tree.spread_of(leaf);
+    // A last leaf with a single photon has no area of its own.
+    let area = if area > 0.0 { area } else { tree.area() * photons as f32 / tree.len as f32 };
+    let area = area.max(f32::MIN_POSITIVE);
     let share = target.of_map as f32 / target.ahead as f32;
     let density = share * photons as f32 / area;
     let radius = radius.unwrap_or_else(|| (target.wanted / (PI * density)).sqrt().min(LARGEST));

@@ -33,8 +33,10 @@ pub struct Header {
     pub integrator: String,
     /// Photons of a round and map.
     pub photons: u32,
-    /// Of the first round, metres; none: by density.
+    /// Of the first round, metres; none: by density and the size of pixels.
     pub radius: Option<f64>,
+    /// Rows of the picture, by which radii are at least a part of a pixel.
+    pub rows: u32,
     pub seed: u64,
     pub sampler: String,
     pub fresnel: String,
@@ -53,6 +55,7 @@ impl Header {
             integrator: settings.integrator.name().into(),
             photons: settings.photons_of_round(),
             radius: settings.radius,
+            rows: settings.height,
             seed: settings.seed,
             sampler: settings.sampler.name().into(),
             fresnel: settings.fresnel.name().into(),
@@ -70,6 +73,7 @@ impl Header {
             ("integrator", self.integrator.clone(), asked.integrator.clone()),
             ("number of photons", self.photons.to_string(), asked.photons.to_string()),
             ("radius", words(self.radius), words(asked.radius)),
+            ("height of the picture", self.rows.to_string(), asked.rows.to_string()),
             ("seed", self.seed.to_string(), asked.seed.to_string()),
             ("sampler", self.sampler.clone(), asked.sampler.clone()),
             ("fresnel", self.fresnel.clone(), asked.fresnel.clone()),

@@ -84,7 +84,7 @@ fn without_a_number_of_photons_that_of_the_file_is_taken() {
     let scene = scene().replace("photons = 4000\n", "");
     fs::write(folder.path("room.toml"), scene).unwrap();
     let first = folder.render("--photons 2000 --photon-map a.map");
-    let second = folder.render("--size 300x200 --spp 1 --photon-map a.map");
+    let second = folder.render("--size 300x16 --spp 1 --photon-map a.map");
     assert_eq!((&first["photons"], &second["photons"]), (&Value::from(2000), &Value::from(2000)));
 }
 
@@ -97,6 +97,7 @@ fn what_does_not_fit_is_refused_with_the_reason() {
     folder.refuses("--photon-map a.map --integrator photon", "integrator is auto");
     folder.refuses("--photon-map a.map --integrator path", "asks no photons");
     folder.refuses("--photon-map a.map --radius 0.5", "radius is none");
+    folder.refuses("--photon-map a.map --size 24x17", "height of the picture is 16, this render asks for 17");
     fs::write(folder.path("room.toml"), scene().replace("radius = 0.5", "radius = 0.4")).unwrap();
     folder.refuses("--photon-map a.map", "scene");
     folder.refuses("--photon-map nowhere/a.map", "nowhere");
