@@ -32,7 +32,7 @@ pub fn room(number: u64) -> World {
     let mut world = World::default();
     let walls = material(&mut world, grey(random.between(0.3, 0.8)));
     closed_box(&mut world, at(0.0, 0.0, half.z), half, walls, None);
-    let mut room = Room { world, half, least: 10f64.powi(-decades(number)), random };
+    let mut room = Room { world, half, least: libm::exp10(-f64::from(decades(number))), random };
     let focus = room.focus();
     room.casters(focus);
     room.lamps(focus);
@@ -88,7 +88,7 @@ struct Room {
 impl Room {
     /// A length between the smallest of the room and `most`, any decade alike.
     fn length(&mut self, most: f64) -> f64 {
-        most * self.least.powf(self.random.unit())
+        most * libm::pow(self.least, self.random.unit())
     }
 
     fn caster(&mut self) -> usize {
@@ -142,7 +142,7 @@ impl Room {
         let black = material(&mut self.world, grey(0.0));
         let mut placed = 0;
         while placed < count {
-            let away = focus.radius * (1.6 * self.half.z / focus.radius / 4.0).powf(self.random.unit()) * 4.0;
+            let away = focus.radius * libm::pow(1.6 * self.half.z / focus.radius / 4.0, self.random.unit()) * 4.0;
             let tilt = at(self.random.between(-0.7, 0.7), self.random.between(-0.7, 0.7), 1.0).normalize();
             let (size, centre) = (self.length(0.2).min(0.2 * away), focus.centre + tilt * away);
             if !self.fits(centre, 1.5 * size) {

@@ -183,7 +183,8 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
 /// Mean and its standard error.
 fn moments(values: &[f64]) -> (f64, f64) {
     let mean_of = mean(values.iter().copied());
-    let variance = values.iter().map(|value| (value - mean_of).powi(2)).sum::<f64>() / (values.len() - 1) as f64;
+    let variance =
+        values.iter().map(|value| (value - mean_of) * (value - mean_of)).sum::<f64>() / (values.len() - 1) as f64;
     (mean_of, (variance / values.len() as f64).sqrt())
 }
 

@@ -150,10 +150,12 @@ fn no_flux_is_lost_or_made_where_radii_change() {
     let scene = plane();
     let surfaces = Surfaces::new(&scene);
     let mut photons = Photons::default();
+    let mut radius = 0.008;
     for k in 0..12 {
         photons.places.push([0.03 * k as f32 - 0.2, 0.01, 0.0, f32::from_bits(Tag::new(0, true).0)]);
         photons.flux.push([1.0, 0.0, 0.0, 0.0]);
-        photons.radii.push(0.008 * (4.0f32 / 3.0).powi(k));
+        photons.radii.push(radius);
+        radius *= 4.0f32 / 3.0;
     }
     let total = photons.len() as f64;
     photons.flux.iter_mut().zip(&photons.radii).for_each(|(flux, radius)| {
