@@ -38,7 +38,7 @@ pub fn pairs(world: &World, frame: &Frame, faces: &[Candidate]) -> Vec<Pair> {
 /// The drawer of a plane, whichever side it shows.
 fn drawer(face: &Candidate) -> i64 {
     let [x, y, z, distance] = face.plane.map(f64::from);
-    let figure = 0.612_372_4 * x + 0.353_553_4 * y + 0.707_106_8 * z + 0.5 * distance;
+    let figure = 0.613 * x + 0.352 * y + 0.709 * z + 0.5 * distance;
     (figure.abs() / DRAWER) as i64
 }
 

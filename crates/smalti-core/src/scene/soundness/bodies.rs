@@ -32,7 +32,7 @@ type Edge = [u32; 2];
 /// The bodies of the faces for which `wanted`, which is given the material and whether it emits.
 pub fn bodies(world: &World, frame: &Frame, wanted: impl Fn(usize, bool) -> bool) -> Vec<Body> {
     let mut corners = Corners::default();
-    let mut faces: Vec<(Origin, Vec<u32>)> = Vec::new();
+    let mut faces: Vec<Numbered> = Vec::new();
     for (index, polygon) in world.polygons.iter().enumerate() {
         if wanted(polygon.material, polygon.radiance.is_some()) {
             let ids = polygon.vertices.iter().map(|v| corners.id(frame.point(*v))).collect();
@@ -69,10 +69,11 @@ impl Corners {
     }
 }
 
-type Faces = Vec<(Origin, Vec<u32>)>;
+/// A face and the numbers of its corners.
+type Numbered = (Origin, Vec<u32>);
 
 /// The faces, those together that share a corner.
-fn apart(points: &[DVec3], faces: &[(Origin, Vec<u32>)]) -> Vec<Faces> {
+fn apart<'f>(points: &[DVec3], faces: &'f [Numbered]) -> Vec<Vec<&'f Numbered>> {
     let mut leaders: Vec<u32> = (0..points.len() as u32).collect();
     for (_, corners) in faces {
         for corner in &corners[1..] {
@@ -81,30 +82,22 @@ fn apart(points: &[DVec3], faces: &[(Origin, Vec<u32>)]) -> Vec<Faces> {
         }
     }
     let mut numbers: HashMap<u32, usize> = HashMap::new();
-    let mut bodies: Vec<Faces> = Vec::new();
+    let mut bodies: Vec<Vec<&Numbered>> = Vec::new();
     for face in faces {
-        let group = leader(&mut leaders, face.1[0]);
-        let number = *numbers.entry(group).or_insert(bodies.len());
-        bodies.resize(bodies.len().max(number + 1), Vec::new());
-        bodies[number].push(face.clone());
+        let next = bodies.len();
+        let number = *numbers.entry(leader(&mut leaders, face.1[0])).or_insert(next);
+        bodies.resize(next.max(number + 1), Vec::new());
+        bodies[number].push(face);
     }
     bodies
 }
 
-fn body(points: &[DVec3], faces: &[(Origin, Vec<u32>)]) -> Body {
-    // How often faces run along an edge from its lower corner to its higher one, less how often the other way.
-    let mut runs: HashMap<Edge, i32> = HashMap::new();
-    for (_, corners) in faces {
-        for (a, b) in corners.iter().zip(corners.iter().cycle().skip(1)) {
-            run(&mut runs, *a, *b, 1);
-        }
-    }
-    runs.retain(|_, count| *count != 0);
+fn body(points: &[DVec3], faces: &[&Numbered]) -> Body {
+    let sides = faces.iter().flat_map(|(_, corners)| corners.iter().zip(corners.iter().cycle().skip(1)));
+    let mut runs = netted(sides.map(|(a, b)| run(*a, *b, 1)).collect());
     if runs.len() <= MOST_SPLIT {
         runs = split(points, &runs);
     }
-    let mut free: Vec<Edge> = runs.into_iter().filter(|(_, count)| *count != 0).map(|(edge, _)| edge).collect();
-    free.sort_unstable();
     let middle = points[faces[0].1[0] as usize];
     let volume = |corners: &[u32]| {
         let at = |k: usize| points[corners[k] as usize] - middle;
@@ -112,29 +105,37 @@ fn body(points: &[DVec3], faces: &[(Origin, Vec<u32>)]) -> Body {
     };
     Body {
         faces: faces.iter().map(|face| face.0).collect(),
-        free: free.into_iter().map(|edge| edge.map(|corner| points[corner as usize])).collect(),
+        free: runs.into_iter().map(|(edge, _)| edge.map(|corner| points[corner as usize])).collect(),
         volume: faces.iter().map(|(_, corners)| volume(corners)).sum(),
     }
 }
 
-fn run(runs: &mut HashMap<Edge, i32>, a: u32, b: u32, count: i32) {
-    if a != b {
-        *runs.entry([a.min(b), a.max(b)]).or_default() += if a < b { count } else { -count };
-    }
+/// An edge, and how often faces run along it from its lower corner to its higher one, less how often the other way.
+type Run = (Edge, i32);
+
+fn run(a: u32, b: u32, count: i32) -> Run {
+    if a < b { ([a, b], count) } else { ([b, a], -count) }
+}
+
+/// Each edge once, where faces do not run along it as often one way as the other.
+fn netted(mut runs: Vec<Run>) -> Vec<Run> {
+    runs.sort_unstable_by_key(|run| run.0);
+    let of_edges = runs.chunk_by(|a, b| a.0 == b.0);
+    let sums = of_edges.map(|same| (same[0].0, same.iter().map(|run| run.1).sum()));
+    sums.filter(|(edge, sum)| *sum != 0 && edge[0] != edge[1]).collect()
 }
 
 /// The edges cut where corners of others lie on them: two short faces may end at one long one.
-fn split(points: &[DVec3], runs: &HashMap<Edge, i32>) -> HashMap<Edge, i32> {
-    let mut ends: Vec<u32> = runs.keys().flatten().copied().collect();
+fn split(points: &[DVec3], runs: &[Run]) -> Vec<Run> {
+    let mut ends: Vec<u32> = runs.iter().flat_map(|run| run.0).collect();
     ends.sort_unstable();
     ends.dedup();
-    let mut cut = HashMap::new();
-    for (&[a, b], &count) in runs {
+    let mut cut = Vec::new();
+    for &([a, b], count) in runs {
         let (from, along) = (points[a as usize], points[b as usize] - points[a as usize]);
-        let length = along.length_squared();
         let place = |corner: &u32| {
             let to = points[*corner as usize] - from;
-            let share = to.dot(along) / length;
+            let share = to.dot(along) / along.length_squared();
             let beside = (to - share * along).abs().max_element();
             (share > 0.0 && share < 1.0 && beside < ON_EDGE).then_some((share, *corner))
         };
@@ -143,9 +144,9 @@ fn split(points: &[DVec3], runs: &HashMap<Edge, i32>) -> HashMap<Edge, i32> {
         between.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut last = a;
         for corner in between.into_iter().map(|(_, corner)| corner).chain([b]) {
-            run(&mut cut, last, corner, count);
+            cut.push(run(last, corner, count));
             last = corner;
         }
     }
-    cut
+    netted(cut)
 }
