@@ -133,7 +133,7 @@ fn folder_of(path: &Path) -> &Path {
 ///
 /// Where NAME is long, a piece of it and its hash stand for it: what the file system takes for the name it takes for
 /// this too.
-fn temporary_of(path: &Path) -> PathBuf {
+pub fn temporary_of(path: &Path) -> PathBuf {
     let name = path.file_name().unwrap_or_default();
     let ending = format!(".{}.tmp", std::process::id());
     let mut temporary = OsString::from(".");

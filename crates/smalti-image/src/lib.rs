@@ -4,6 +4,7 @@
 //! bytes. Files are written atomically: at every moment the destination is absent, the old file or the new one.
 
 mod align;
+mod codec;
 mod content;
 mod destination;
 mod difference;
@@ -20,7 +21,7 @@ mod tone;
 mod window;
 
 pub use align::{AlignError, Aligned, Sizes, align};
-pub use destination::{DestinationError, check_destination, check_place, replace};
+pub use destination::{DestinationError, check_destination, check_place, replace, temporary_of};
 pub use difference::{Difference, difference, difference_scale};
 pub use file::{ReadError, WriteError, encode_png, read, read_picture, write, write_part};
 pub use format::{Format, FormatError};

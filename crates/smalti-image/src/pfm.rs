@@ -3,7 +3,7 @@
 use smalti_core::film::Image;
 
 use crate::Picture;
-use crate::file::{Broken, check_size};
+use crate::codec::{Broken, check_size};
 
 /// Little-endian RGB with scale -1, every bit kept.
 pub(crate) fn encode(image: &Image) -> Vec<u8> {

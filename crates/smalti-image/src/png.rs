@@ -4,7 +4,7 @@ use image::codecs::png::PngDecoder;
 use image::{DynamicImage, ImageDecoder, ImageError};
 use smalti_core::film::Image;
 
-use crate::file::{Broken, check_size};
+use crate::codec::{Broken, check_size};
 use crate::tone;
 use crate::{Picture, Provenance};
 

@@ -33,7 +33,7 @@ Examples:
 
 Exit codes:
   0 done; 1 a check failed; 2 a mistake in arguments or scene; 74 the output could not be written;
-  101 a bug in smalti; 129, 130, 143 interrupted, the picture so far is kept";
+  101 a bug in smalti; 129, 130, 143 interrupted; a picture with samples is kept";
 
 /// The commands.
 #[derive(Debug, Subcommand)]

@@ -12,11 +12,11 @@ use std::fs;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
-use smalti_core::film::Film;
+use smalti_core::film::{Film, Image};
 use smalti_core::render::{Level, Renderer};
 use smalti_core::scene::World;
 use smalti_core::settings::{Integrator, Settings};
-use smalti_measure::{BiasStatement, ErrorStatement, bias_statement, error_statement};
+use smalti_measure::{BiasStatement, ErrorStatement, bias_statement, compare, error_statement};
 use smalti_scheduler::{Cancel, pool, render};
 use smalti_tests::rooms::{self, room};
 
@@ -86,7 +86,7 @@ fn read() -> Result<Arguments> {
 
 /// A render, and what it states.
 struct Rendered {
-    pixels: Vec<f64>,
+    image: Image,
     error: ErrorStatement,
     bias: Option<BiasStatement>,
 }
@@ -98,8 +98,18 @@ fn rendered(world: &World, settings: Settings) -> Result<Rendered> {
     let film = Film::new(renderer.settings().area(), 32);
     let film = render(&renderer, film, &pool, &Cancel::default(), None)?.film;
     let error = error_statement(&film).context("it takes 32 samples a pixel")?;
-    let grey = |pixel: &[f32; 3]| pixel.iter().copied().map(f64::from).sum::<f64>() / 3.0;
-    Ok(Rendered { pixels: film.develop().pixels.iter().map(grey).collect(), error, bias: bias_statement(&film) })
+    Ok(Rendered { image: film.develop(), error, bias: bias_statement(&film) })
+}
+
+impl Rendered {
+    /// Its pixels as greys; everything in the rooms is grey.
+    fn greys(&self) -> impl Iterator<Item = f64> {
+        self.image.pixels.iter().map(|pixel| pixel.map(f64::from).iter().sum::<f64>() / 3.0)
+    }
+
+    fn brightness(&self) -> f64 {
+        self.image.mean().iter().sum::<f64>() / 3.0
+    }
 }
 
 fn study(number: u64, arguments: &Arguments) -> Result<String> {
@@ -111,21 +121,21 @@ fn study(number: u64, arguments: &Arguments) -> Result<String> {
         &world,
         Settings { integrator: Integrator::Path, spp: arguments.path_spp, seed: 7, ..Settings::default() },
     )?;
-    let brightness = mean(truth.pixels.iter().copied());
-    let is_caustic = |pixel: &f64| *pixel > CAUSTIC * brightness;
+    let brightness = truth.brightness();
+    let is_caustic = |pixel: f64| pixel > CAUSTIC * brightness;
     let mut room = Room::default();
     for seed in 0..arguments.seeds {
         let image = rendered(&world, Settings { photons: arguments.photons, ..auto(seed, arguments.spp) })?;
-        let error = relative_error(&image.pixels, &truth.pixels, brightness);
+        let error = compare(&image.image, &truth.image, 0)?.relative_error.context("the truth is black")?;
         // The truth has noise of its own.
         let own = truth.error.relative_error;
         room.count((error * error - own * own).max(0.0).sqrt(), &image);
-        room.means.push(mean(image.pixels.iter().copied()) / brightness - 1.0);
-        let caustic = || truth.pixels.iter().zip(&image.pixels).filter(|(truth, _)| is_caustic(truth));
+        room.means.push(image.brightness() / brightness - 1.0);
+        let caustic = || truth.greys().zip(image.greys()).filter(|(truth, _)| is_caustic(*truth));
         let there = caustic().map(|(truth, _)| truth).sum::<f64>();
         room.caustics.push(if there > 0.0 { caustic().map(|(_, x)| x).sum::<f64>() / there - 1.0 } else { 0.0 });
     }
-    let path_off = mean(path.pixels.iter().copied()) / brightness - 1.0;
+    let path_off = path.brightness() / brightness - 1.0;
     Ok(format!("{},{path_off:.4},{:.4}", room.line(), path.error.relative_error))
 }
 
@@ -170,19 +180,9 @@ impl Room {
     }
 }
 
-fn relative_error(image: &[f64], truth: &[f64], brightness: f64) -> f64 {
-    let floor = 0.01 * brightness * brightness;
-    mean(image.iter().zip(truth).map(|(x, r)| (x - r) * (x - r) / (r * r + floor))).sqrt()
-}
-
-fn mean(values: impl Iterator<Item = f64>) -> f64 {
-    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
-    sum / count
-}
-
 /// Mean and its standard error.
 fn moments(values: &[f64]) -> (f64, f64) {
-    let mean_of = mean(values.iter().copied());
+    let mean_of = values.iter().sum::<f64>() / values.len() as f64;
     let variance =
         values.iter().map(|value| (value - mean_of) * (value - mean_of)).sum::<f64>() / (values.len() - 1) as f64;
     (mean_of, (variance / values.len() as f64).sqrt())

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::kd_tree::Tree;
+use super::kd_tree::{Tree, descend};
 use super::{Photons, Surfaces, Tag};
 use crate::lanes::{Lanes, V3};
 
@@ -59,18 +59,20 @@ impl Forest {
     pub fn leaf<L: Lanes>(&self, l: L, prim: L::U, point: V3<L>) -> L::U {
         let [splits, first, leaves, _] = l.gather_record(&self.trees, l.gather_u(&self.tree_of, prim));
         let (splits, first, leaves) = (l.bits(splits), l.bits(first), l.bits(leaves));
-        let mut node = l.u(1);
-        loop {
-            let down = l.lt_u(node, leaves);
-            if !l.any(down) {
-                break;
-            }
-            let at = l.select_u(down, l.add_u(l.add_u(splits, node), l.u(u32::MAX)), l.u(0));
-            let [split, axis] = l.gather_record(&self.splits, at);
-            let high = l.select_u(l.lt(split, super::kd_tree::along(l, l.bits(axis), point)), l.u(1), l.u(0));
-            node = l.select_u(down, l.shl::<1>(node) | high, node);
-        }
-        let leaf = l.add_u(first, l.add_u(node, l.add_u(!leaves, l.u(1))));
+        // A tree of one leaf has no split, and those behind it may have none either.
+        let several = l.lt_u(l.u(1), leaves);
+        let leaf = descend(
+            l,
+            leaves,
+            point,
+            #[inline(always)]
+            |number| {
+                let at = l.select_u(several, l.add_u(splits, number), l.u(0));
+                let [split, axis] = l.gather_record(&self.splits, at);
+                (split, l.bits(axis))
+            },
+        );
+        let leaf = l.add_u(first, leaf);
         l.select_u(l.eq_u(leaves, l.u(0)), l.u(self.leaves), leaf)
     }
 
@@ -79,7 +81,8 @@ impl Forest {
         self.leaves as usize
     }
 
-    /// Whether it serves a scene of so many primitives: a point that walks through it goes nowhere else.
+    /// Whether every tree and split that a point meets is there, for a scene of `prims` primitives. A file that is damaged
+    /// or of another scene fails.
     pub fn is_sound(&self, prims: u32) -> bool {
         let tree_of =
             self.tree_of.len() == prims as usize && self.tree_of.iter().all(|tree| (*tree as usize) < self.trees.len());

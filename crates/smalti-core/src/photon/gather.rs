@@ -10,8 +10,7 @@
 use core::f32::consts::FRAC_1_SQRT_2;
 
 use super::kd_tree::{BLOCK, Block, Tree};
-use super::kernel::{LEAST_STEPS, STEP};
-use super::surfaces::Group;
+use super::surfaces::{Group, LEAST_STEPS, STEP};
 use super::{Map, Surfaces, Tag};
 use crate::lanes::{Lanes, One, Rgb, V3};
 use crate::mutant::mutant;

@@ -109,28 +109,25 @@ impl Tree {
         (l.lt(place, left), l.lt(right, place))
     }
 
-    /// The child of each node on the point's side of its split.
-    #[inline(always)]
-    fn child<L: Lanes>(&self, l: L, node: L::U, point: V3<L>) -> L::U {
-        let [split, _, _, axis] = l.gather_record(&self.splits, l.add_u(node, l.u(u32::MAX)));
-        let first = l.shl::<1>(node);
-        l.select_u(l.lt(split, along(l, l.bits(axis), point)), l.add_u(first, l.u(1)), first)
-    }
-
     /// The leaf of each point.
     #[inline(always)]
     pub fn leaf<L: Lanes>(&self, l: L, point: V3<L>) -> L::U {
-        let leaves = l.u(self.blocks.len() as u32);
-        let mut node = l.u(1);
-        loop {
-            let down = l.lt_u(node, leaves);
-            if !l.any(down) {
-                break;
-            }
-            let child = self.child(l, l.select_u(down, node, l.u(1)), point);
-            node = l.select_u(down, child, node);
-        }
-        l.add_u(node, l.add_u(!leaves, l.u(1)))
+        descend(
+            l,
+            l.u(self.blocks.len() as u32),
+            point,
+            #[inline(always)]
+            |number| {
+                let [split, _, _, axis] = l.gather_record(&self.splits, number);
+                (split, l.bits(axis))
+            },
+        )
+    }
+
+    /// Radii of all photons.
+    pub fn radii(&self) -> impl Iterator<Item = f32> {
+        let there = |(x, radius): (&f32, &f32)| x.is_finite().then_some(*radius);
+        self.blocks.iter().flat_map(move |[xs, .., radii]| xs.iter().zip(radii).filter_map(there))
     }
 
     /// About how much area all photons lie on.
@@ -290,9 +287,26 @@ fn around([a, b]: Bounds, [c, d]: Bounds) -> Bounds {
     [[0, 1, 2].map(|k: usize| a[k].min(c[k])), [0, 1, 2].map(|k: usize| b[k].max(d[k]))]
 }
 
+/// The leaf on each point's side of all splits on the way down, in heaps of so many `leaves`. `split` gives coordinate and
+/// axis of a split by its number in the heap, from 0 on; lanes that are at their leaf ask for number 0.
+#[inline(always)]
+pub fn descend<L: Lanes>(l: L, leaves: L::U, point: V3<L>, split: impl Fn(L::U) -> (L::F, L::U)) -> L::U {
+    let mut node = l.u(1);
+    loop {
+        let down = l.lt_u(node, leaves);
+        if !l.any(down) {
+            break;
+        }
+        let (split, axis) = split(l.select_u(down, l.add_u(node, l.u(u32::MAX)), l.u(0)));
+        let high = l.select_u(l.lt(split, along(l, axis, point)), l.u(1), l.u(0));
+        node = l.select_u(down, l.shl::<1>(node) | high, node);
+    }
+    l.add_u(node, l.add_u(!leaves, l.u(1)))
+}
+
 /// A point's coordinate along an axis.
 #[inline(always)]
-pub fn along<L: Lanes>(l: L, axis: L::U, point: V3<L>) -> L::F {
+fn along<L: Lanes>(l: L, axis: L::U, point: V3<L>) -> L::F {
     let y_or_z = l.select(l.eq_u(axis, l.u(1)), point.y, point.z);
     l.select(l.eq_u(axis, l.u(0)), point.x, y_or_z)
 }

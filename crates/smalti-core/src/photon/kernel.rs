@@ -15,12 +15,6 @@ use crate::lanes::{Lanes, V3};
 use crate::mutant::mutant;
 use crate::scene::View;
 
-/// Steps of a coordinate that a radius has at least: below that places are too coarse.
-pub const LEAST_STEPS: f32 = 32.0;
-
-/// A step of coordinates about 1, relative to them.
-pub const STEP: f32 = 1.0 / 16_777_216.0;
-
 /// The least radius in the first round, in pixels. A spot of light that is much smaller than a pixel is met by few of its
 /// samples, and is all noise.
 const PIXELS: f64 = 0.5;
@@ -47,7 +41,7 @@ pub struct Footprint {
 }
 
 impl Footprint {
-    /// Of these views in pictures of so many rows.
+    /// Footprints of the cameras `views` in pictures of `rows` rows.
     pub fn new(views: &[View], rows: u32) -> Self {
         let camera = |view: &View| {
             let half_height = view.up.map(f64::from).map(|x| x * x).iter().sum::<f64>().sqrt();

@@ -39,6 +39,12 @@ impl Map {
         self.len() == 0
     }
 
+    /// The least and the largest radius of its photons; `None` without a photon.
+    pub fn radii(&self) -> Option<[f32; 2]> {
+        let radii = self.trees.iter().flat_map(Tree::radii);
+        radii.map(|radius| [radius; 2]).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])
+    }
+
     /// Bytes that it takes.
     pub fn bytes(&self) -> u64 {
         self.trees.iter().map(Tree::bytes).sum()

@@ -12,9 +12,8 @@ use serde::{Deserialize, Serialize};
 use super::kd_tree::Tree;
 use super::kernel::{Footprint, Kernels};
 use super::pass::{Pass, PhotonWorkspace, Traced};
-use super::{Account, Batch, Map, Photons, Pilot, SUB_MAPS, Visibility, pilot};
+use super::{Account, Batch, Map, Photons, Pilot, SUB_MAPS, Surfaces, Visibility, pilot};
 use crate::lanes::dispatch;
-use crate::plan;
 use crate::render::Renderer;
 
 /// How fast the radius shrinks: of the rounds' mean, variance falls as n^−α and squared bias as n^(2α−2).
@@ -61,9 +60,9 @@ impl Maps {
         layers + self.visibility.as_ref().map_or(0, |visibility| visibility.bytes())
     }
 
-    /// How far photons count, the least and the most, in the frame; `None` without a map.
+    /// The least and the largest radius of photons, in the frame; `None` without a photon.
     pub fn radii(&self) -> Option<[f32; 2]> {
-        let radii = self.layers().map(|layer| layer.pilot.radii().map(|radius| radius * self.shrink));
+        let radii = self.layers().filter_map(|layer| layer.map.radii());
         radii.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
     }
 
@@ -138,8 +137,9 @@ impl Renderer {
         let Some(photons) = &self.plan().photons else { return Maps::default() };
         let layer = |pass: &Option<Pass>, pilot: Option<Arc<Pilot>>| {
             let pass = pass.as_ref()?;
-            let pilot = pilot.unwrap_or_else(|| Arc::new(self.pilot(pass, photons, progress)));
-            let map = self.map(pass, round, &pilot, progress);
+            let on = &photons.surfaces;
+            let pilot = pilot.unwrap_or_else(|| Arc::new(self.pilot(pass, (on, photons.radius), progress)));
+            let map = self.map(pass, round, (on, &pilot), progress);
             Some(Layer { pilot, map })
         };
         let (caustic, global) = (layer(&photons.caustic, pilots.caustic), layer(&photons.global, pilots.global));
@@ -158,8 +158,7 @@ impl Renderer {
         photons.caustic.iter().chain(&photons.global).map(of).sum::<u64>() + shadow
     }
 
-    fn pilot(&self, pass: &Pass, plan: &plan::Photons, progress: &AtomicU64) -> Pilot {
-        let (surfaces, radius) = (&plan.surfaces, plan.radius);
+    fn pilot(&self, pass: &Pass, (surfaces, radius): (&Surfaces, Option<f32>), progress: &AtomicU64) -> Pilot {
         let ahead = Pass { photons: pilot::PHOTONS, ..pass.clone() };
         let mut photons = Photons::default();
         for traced in self.traced(&ahead, ahead.batches(AHEAD), None, progress) {
@@ -176,19 +175,18 @@ impl Renderer {
     }
 
     /// Trees are built as workers become free, so that little more is held than the trees.
-    fn map(&self, pass: &Pass, round: u32, pilot: &Pilot, progress: &AtomicU64) -> Map {
-        let surfaces = self.plan().photons.as_ref().map(|photons| &photons.surfaces);
+    fn map(&self, pass: &Pass, round: u32, (surfaces, pilot): (&Surfaces, &Pilot), progress: &AtomicU64) -> Map {
         let quantity = self.plan().quantity();
         let footprint = match self.settings().radius {
             Some(_) => Footprint::default(),
             None => Footprint::new(&self.scene().views, self.settings().height),
         };
-        let kernels = surfaces.map(|surfaces| Kernels { pilot, surfaces, shrink: shrink(round), footprint, quantity });
+        let kernels = Kernels { pilot, surfaces, shrink: shrink(round), footprint, quantity };
         let trees = self.plan().trees(self.settings());
         let sub_maps = |tree: u32| tree * SUB_MAPS / trees..(tree + 1) * SUB_MAPS / trees;
         let tree = |number: u32| {
             let batches = sub_maps(number).flat_map(|sub_map| pass.sub_map(round, sub_map)).collect();
-            collected(&self.traced(pass, batches, kernels.as_ref(), progress))
+            collected(&self.traced(pass, batches, Some(&kernels), progress))
         };
         let (built, accounts): (Vec<Tree>, Vec<Account>) = (0..trees).into_par_iter().map(tree).unzip();
         let mut account = Account::default();

@@ -25,6 +25,9 @@ pub const SEEN: f32 = 48.0;
 /// The largest radius, in the frame (in which scenes are about 2 wide).
 const LARGEST: f32 = 0.05;
 
+/// The least area of a leaf's photons, in the frame: that of photons in one place is not 0, or densities were infinite.
+const LEAST_AREA: f32 = 1e-30;
+
 /// Photons that were sent ahead.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pilot {
@@ -56,13 +59,7 @@ impl Pilot {
         Self { forest, regions }
     }
 
-    /// The least and the largest radius, in the frame.
-    pub fn radii(&self) -> [f32; 2] {
-        let radii = || self.regions.iter().map(|[radius, _]| *radius);
-        [radii().fold(f32::INFINITY, f32::min), radii().fold(0.0, f32::max)]
-    }
-
-    /// Whether it serves a scene of so many primitives: see [`Forest::is_sound`].
+    /// Whether its forest is sound for a scene of `prims` primitives ([`Forest::is_sound`]), with a region for each leaf.
     pub fn is_sound(&self, prims: u32) -> bool {
         self.regions.len() == self.forest.leaves() + 1 && self.forest.is_sound(prims)
     }
@@ -95,7 +92,7 @@ fn region(tree: &Tree, leaf: usize, target: Target, radius: Option<f32>) -> [f32
     let (photons, flux, area) = tree.spread_of(leaf);
     // A last leaf with a single photon has no area of its own.
     let area = if area > 0.0 { area } else { tree.area() * photons as f32 / tree.len as f32 };
-    let area = area.max(f32::MIN_POSITIVE);
+    let area = area.max(LEAST_AREA);
     let share = target.of_map as f32 / target.ahead as f32;
     let density = share * photons as f32 / area;
     let radius = radius.unwrap_or_else(|| (target.wanted / (PI * density)).sqrt().min(LARGEST));
@@ -163,7 +160,22 @@ mod tests {
             let found = radius(&pilot, 0.003 * side);
             assert!((0.5..2.0).contains(&(found / expected)), "{side}: {found} instead of {expected}");
             assert!(radius(&pilot, 0.4 * side) > 3.0 * found, "{side}");
-            assert!(pilot.radii()[1] <= LARGEST && pilot.is_sound(2) && !pilot.is_sound(3));
+            assert!(pilot.regions.iter().all(|[radius, _]| *radius <= LARGEST));
+            assert!(pilot.is_sound(2) && !pilot.is_sound(3));
+        }
+    }
+
+    /// Of photons in one place, and of one alone.
+    #[test]
+    fn every_region_is_finite() {
+        for count in [1, 2, 16, 65, 2048] {
+            let mut photons = Photons::default();
+            for _ in 0..count {
+                photons.places.push([0.25, -0.5, 0.0, f32::from_bits(Tag::new(0, true).0)]);
+                photons.flux.push([1.0; 4]);
+            }
+            let pilot = Pilot::new(&photons, &surfaces(), TARGET, None);
+            assert!(pilot.regions.as_flattened().iter().all(|value| value.is_finite()), "{count}: {:?}", pilot.regions);
         }
     }
 

@@ -9,7 +9,6 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::Tag;
-use super::kernel::{LEAST_STEPS, STEP};
 use crate::accel::cones::leader;
 use crate::lanes::math::disc_segment;
 use crate::lanes::{Lanes, V3};
@@ -24,6 +23,12 @@ const ALIKE: f32 = 0.7;
 
 /// Directions in which a disc that reaches over several edges is measured.
 const DIRECTIONS: usize = 32;
+
+/// Steps of a coordinate that a photon's radius has at least: below that places are too coarse.
+pub const LEAST_STEPS: f32 = 32.0;
+
+/// A step of coordinates, relative to them.
+pub const STEP: f32 = 1.0 / 16_777_216.0;
 
 /// Set in a group's number where the group is a sphere.
 const SPHERE: u32 = 1 << 31;

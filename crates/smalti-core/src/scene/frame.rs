@@ -2,7 +2,7 @@
 //!
 //! Promise 3 rests on this: no epsilon anywhere is absolute, because every scene has the size 1 when it is traced. An f32
 //! coordinate is the finer the nearer it is to the origin, so the origin lies where the scene has its details
-//! ([`details`](super::details)): a marble in a hall, or beside a ball a hundred kilometres away, is traced as finely as
+//! ([`details`]): a marble in a hall, or beside a ball a hundred kilometres away, is traced as finely as
 //! alone. The corner of a box is subtracted first (exact under every translation that is exact in f64), then half of the
 //! box's extent, rounded to a coarse grid, then everything is multiplied by a power of two; all in f64.
 
@@ -33,10 +33,8 @@ impl Frame {
             return Self { corner: low, half: DVec3::ZERO, scale: 1.0 };
         }
         let grid = 1.0 / (power_of_two_below(1.0 / largest) * 4096.0);
-        let middle = [0, 1, 2].map(|axis| details::middle(world, low, axis));
-        let half = |place: Place| (place.extent / (2.0 * grid)).round() * grid;
-        let corner = DVec3::from_array(middle.map(|place| place.low));
-        let half = DVec3::from_array(middle.map(half));
+        let Place { low: corner, extent } = details::middle(world, low);
+        let half = (extent / (2.0 * grid)).round() * grid;
         let reach = ((high - corner) - half).max(half - (low - corner)).max_element();
         Self { corner, half, scale: power_of_two_below(1.0 / reach) }
     }

@@ -7,7 +7,7 @@
 
 use ::exr::meta::header::Header;
 
-use crate::file::Broken;
+use crate::codec::Broken;
 
 /// The channels that are read.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -16,7 +16,7 @@ use smalti_core::film::Image;
 use super::choice::{Choice, Colour, choose};
 use super::refusal;
 use crate::Picture;
-use crate::file::{Broken, check_size};
+use crate::codec::{Broken, check_size};
 use crate::window::{Window, Windows};
 
 /// The picture in a file, with its windows.

@@ -9,7 +9,7 @@ const COMPRESSIONS: u8 = 12;
 /// The bit of the version, in its second byte, of files with deep data.
 const DEEP: u8 = 0x08;
 
-/// What is wrong with a header, in words.
+/// The reason for which a header is refused, in words.
 pub(super) fn reason(bytes: &[u8]) -> &'static str {
     if bytes.get(5).is_some_and(|flags| flags & DEEP != 0) {
         return "it holds deep data, which is not read";

@@ -121,7 +121,7 @@ fn file(parts: Vec<Layer<AnyChannels<FlatSamples>>>) -> Vec<u8> {
     file.into_inner()
 }
 
-/// What is read of a file with one part that has channels of these names.
+/// The picture that is read from a file with one part, which has channels of these names.
 fn read(channels: &[&str]) -> Result<Picture, String> {
     decode(&file(vec![part(None, channels)])).map_err(|error| error.to_string())
 }

@@ -11,7 +11,7 @@ use ::exr::meta::header::{ImageAttributes, LayerAttributes};
 use smalti_core::film::Image;
 
 use crate::Provenance;
-use crate::file::Broken;
+use crate::codec::Broken;
 use crate::window::{Window, Windows};
 
 /// Blocks in the order of the scan lines: the same bytes in every run. Run lengths shrink what is flat and cost little;

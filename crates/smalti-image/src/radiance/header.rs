@@ -1,7 +1,7 @@
 //! The header of a Radiance picture: lines of text up to an empty one, and the resolution line, which says in which
 //! order the pixels follow. After Radiance's manual of file formats (G. Ward, `filefmts.pdf`).
 
-use crate::file::Broken;
+use crate::codec::Broken;
 
 /// All of a header that matters for its pixels.
 #[derive(Clone, Debug, PartialEq)]

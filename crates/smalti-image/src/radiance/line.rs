@@ -1,6 +1,6 @@
 //! A line of RGBE pixels: flat, or with run lengths of the old or the new kind. After Radiance's `color.c`.
 
-use crate::file::Broken;
+use crate::codec::Broken;
 
 /// Four bytes: red, green, blue and the exponent that they share.
 pub(super) type Rgbe = [u8; 4];

@@ -9,7 +9,7 @@ use smalti_core::film::Image;
 
 use self::header::Header;
 use self::line::Rgbe;
-use crate::file::{Broken, check_size};
+use crate::codec::{Broken, check_size};
 use crate::{Picture, Provenance};
 
 /// What can be held is rounded to nearest; negative values and NaN become 0, what is too large the largest value.

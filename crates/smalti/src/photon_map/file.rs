@@ -208,8 +208,7 @@ pub struct Writer {
 impl Writer {
     /// Begins a file that will be at `path`: a new one, or what is at `before` and more.
     pub fn new(path: &Path, header: &Header, before: Option<&PathBuf>) -> io::Result<Self> {
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let temporary = path.with_file_name(format!(".{name}.{}.tmp", std::process::id()));
+        let temporary = smalti_image::temporary_of(path);
         let mut file = BufWriter::new(File::create(&temporary)?);
         if let Some(before) = before {
             let old = File::open(before)?;

@@ -89,6 +89,16 @@ fn without_a_number_of_photons_that_of_the_file_is_taken() {
 }
 
 #[test]
+fn a_map_may_have_a_long_name() {
+    let folder = Folder::new();
+    let name = format!("{}.map", "a".repeat(240));
+    let first = folder.render(&format!("--photon-map {name}"));
+    assert!(folder.path(&name).is_file());
+    let again = folder.render(&format!("--photon-map {name}"));
+    assert_eq!((&again["photons_emitted"], &again["hash"]), (&Value::from(0), &first["hash"]));
+}
+
+#[test]
 fn what_does_not_fit_is_refused_with_the_reason() {
     let folder = Folder::new();
     folder.render("--photon-map a.map");
