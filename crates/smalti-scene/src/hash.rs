@@ -1,21 +1,22 @@
 //! The name of a world: what light and cameras can see of it, in a fixed order, as XXH3-128.
 
 use glam::DVec3;
+use smalti_core::scene::contact::Pair;
 use smalti_core::scene::world::{Material, Rgb};
-use smalti_core::scene::{Frame, Origin, World, contact};
+use smalti_core::scene::{Origin, World};
 use xxhash_rust::xxh3::Xxh3;
 
 /// Bytes that are hashed at a time.
 const CHUNK: usize = 1 << 16;
 
-/// The hash of `world`, 32 lower-case hex digits.
+/// The hash of `world`, whose faces meet in these `pairs`: 32 lower-case hex digits.
 ///
 /// Hashed are, little-endian, with -0 as +0: for each list its length as u64 and its items (polygons, spheres, meshes,
 /// point lights, environment, cameras). Lengths of inner lists and indices are u64 and u32, all numbers f64; an option
 /// is a byte 0 or 1 and its value; a surface's material is a byte for the kind (lambert 0, mirror 1, dielectric 2, one
 /// that absorbs 3) and its numbers. Which of two coinciding surfaces was written first is hashed where that is not the one
 /// that is listed first.
-pub fn of(world: &World) -> String {
+pub fn of(world: &World, pairs: &[Pair]) -> String {
     let mut sink = Sink { hasher: Xxh3::new(), buffer: Vec::with_capacity(2 * CHUNK) };
     sink.surfaces(world);
     sink.count(world.point_lights.len());
@@ -29,7 +30,7 @@ pub fn of(world: &World) -> String {
         sink.points(&[camera.eye, camera.look_at, camera.up]);
         sink.number(camera.fov);
     }
-    sink.order(world);
+    sink.order(world, pairs);
     sink.finish()
 }
 
@@ -60,22 +61,16 @@ impl Sink {
         }
     }
 
-    /// Pairs of coinciding surfaces of which the second in these lists was written first.
-    fn order(&mut self, world: &World) {
-        if world.order.is_as_listed() {
-            return;
-        }
-        let listed = |surface: Origin| match surface {
-            Origin::Polygon(index) => (0, index, 0),
-            Origin::Mesh(index, triangle) => (1, index, triangle),
-            Origin::Sphere(index) => (2, index, 0),
-        };
-        let turned = |[a, b]: &[Origin; 2]| (world.place(*a) < world.place(*b)) != (listed(*a) < listed(*b));
-        let pairs = contact::pairs(world, &Frame::of(world));
-        let mut turned: Vec<_> =
-            pairs.iter().filter(|pair| pair.coincides()).map(|pair| pair.of).filter(turned).collect();
-        turned.sort_by_key(|pair| pair.map(listed));
-        for (kind, index, triangle) in turned.iter().flatten().map(|surface| listed(*surface)) {
+    /// Of `pairs` those that coincide and of which the second in the world's lists was written first.
+    fn order(&mut self, world: &World, pairs: &[Pair]) {
+        let is_turned = |[first, second]: [Origin; 2]| world.place(second) < world.place(first);
+        let turned = pairs.iter().filter(|pair| pair.coincides()).map(|pair| pair.of).filter(|of| is_turned(*of));
+        for surface in turned.flatten() {
+            let (kind, index, triangle) = match surface {
+                Origin::Polygon(index) => (0, index, 0),
+                Origin::Mesh(index, triangle) => (1, index, triangle),
+                Origin::Sphere(index) => (2, index, 0),
+            };
             self.bytes(&[kind]);
             self.bytes(&index.to_le_bytes());
             self.bytes(&triangle.to_le_bytes());

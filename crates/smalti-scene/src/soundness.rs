@@ -25,8 +25,11 @@ impl Names for InFile<'_> {
     }
 }
 
-/// The notes on `world`, which the file `text` describes; `materials` are the names of its first ones.
-pub fn notes(world: &World, pairs: &[Pair], (text, places, materials): (&str, &Places, &[&str])) -> Vec<Note> {
+/// The notes on a world, which the file `text` describes; `materials` are the names of its first ones.
+pub fn notes(
+    (world, frame, pairs): (&World, &Frame, &[Pair]),
+    (text, places, materials): (&str, &Places, &[&str]),
+) -> Vec<Note> {
     let names = InFile { world, text, places, materials };
-    examine(world, &Frame::of(world), pairs).iter().map(|finding| Note::warning(finding.says(&names))).collect()
+    examine(world, frame, pairs).iter().map(|finding| Note::warning(finding.says(&names))).collect()
 }

@@ -14,7 +14,7 @@ use crate::mesh::Watch;
 use crate::note::Note;
 use crate::place::Places;
 use crate::render_table::RenderTable;
-use crate::{camera, light, mesh, soundness, surface};
+use crate::{Loaded, camera, hash, light, mesh, soundness, surface};
 
 const KINDS: &[Key] = &[
     key("camera", ""),
@@ -34,13 +34,9 @@ pub fn root<'d>(document: &'d Spanned<DeTable<'d>>) -> Result<Section<'d>> {
     Section::of_entries(document.get_ref(), "the scene file".to_owned(), document.span(), KINDS)
 }
 
-/// The world and the settings that the document of the file `text` describes, and notes; mesh files are relative to the
-/// folder, and whoever watches hears of them.
-pub fn read<'d>(
-    document: &'d Spanned<DeTable<'d>>,
-    text: &str,
-    meshes: (&Path, &Watch),
-) -> Result<(World, RenderTable, Vec<Note>)> {
+/// What the document of the file `text` describes; mesh files are relative to the folder, and whoever watches hears of
+/// them.
+pub fn read<'d>(document: &'d Spanned<DeTable<'d>>, text: &str, meshes: (&Path, &Watch)) -> Result<Loaded> {
     let root = root(document)?;
     let mut notes = Vec::new();
     let cameras = camera::read(&root)?;
@@ -62,9 +58,10 @@ pub fn read<'d>(
     if !has_light(&world) {
         notes.push(Note::warning("nothing in the scene emits light: the image will be black"));
     }
-    let pairs = contact::pairs(&world, &Frame::of(&world));
-    notes.extend(soundness::notes(&world, &pairs, (text, &places, &names)));
-    Ok((world, settings, notes))
+    let frame = Frame::of(&world);
+    let pairs = contact::pairs(&world, &frame);
+    notes.extend(soundness::notes((&world, &frame, &pairs), (text, &places, &names)));
+    Ok(Loaded { scene_hash: hash::of(&world, &pairs), world, settings, notes })
 }
 
 /// Removes surfaces that cannot be seen: a dielectric with an index of exactly 1 that neither absorbs nor emits.

@@ -203,7 +203,8 @@ impl Default for Scene {
             environment: None,
             views: Vec::new(),
             media: None,
-            touching: None,
+            room: None,
+            joints: None,
             dropped: 0,
         }
     }

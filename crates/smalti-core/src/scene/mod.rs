@@ -15,7 +15,7 @@ pub mod soundness;
 pub mod world;
 
 pub use compile::{compile, newell};
-pub use contact::Touching;
+pub use contact::{Joints, Room};
 pub use frame::Frame;
 pub use media::Media;
 pub use world::World;
@@ -50,8 +50,10 @@ pub struct Scene {
     pub views: Vec<View>,
     /// What rays travel in, where some of it absorbs.
     pub media: Option<Media>,
-    /// What coincides or nearly touches, where something does.
-    pub touching: Option<Touching>,
+    /// How far rays may start off primitives, where some nearly touch.
+    pub room: Option<Room>,
+    /// Dielectrics in one place, where some are.
+    pub joints: Option<Joints>,
     /// Primitives without area that were left out.
     pub dropped: usize,
 }
@@ -98,8 +100,8 @@ impl Class {
     }
 }
 
-/// Where a primitive comes from, for messages.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+/// Where a primitive comes from, for messages; in the order of the world's lists.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Origin {
     /// Index into the world's polygons.
     Polygon(u32),

@@ -41,13 +41,6 @@ pub struct Order {
     pub meshes: Vec<usize>,
 }
 
-impl Order {
-    /// Whether surfaces were written as they are listed: polygons, then meshes, each in order.
-    pub fn is_as_listed(&self) -> bool {
-        self.polygons.iter().chain(&self.meshes).is_sorted()
-    }
-}
-
 impl World {
     /// Where a surface stands among all: lower is earlier. Of one mesh the triangles are as they are listed.
     pub fn place(&self, surface: Origin) -> (usize, u32) {

@@ -107,8 +107,8 @@ impl<L: Lanes> Crossing<L> {
             None => l.u(0),
         };
         let mut here = Joined { index: hit.colour, beyond };
-        if let Some(touching) = scene.touching.as_ref().filter(|touching| touching.joins()) {
-            here = joined(l, (scene, touching), (hits, at), hit.outside, here);
+        if let Some(joints) = &scene.joints {
+            here = joined(l, (scene, joints), (hits, at), hit.outside, here);
         }
         let Joined { index: V3 { x, y, z }, beyond } = here;
         let boundary = boundary(l, [x, y, z], hit.outside, cosine);

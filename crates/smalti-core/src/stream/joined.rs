@@ -7,7 +7,7 @@ use super::{DIRECTION, LEAVES, ORIGIN, PRIM, Stream};
 use crate::geometry::Lone;
 use crate::lanes::{Lanes, V3};
 use crate::scene::media::CLEAR;
-use crate::scene::{Media, Scene, Touching};
+use crate::scene::{Joints, Media, Scene};
 
 /// The boundaries in the places of a packet's hits.
 pub struct Joined<L: Lanes> {
@@ -22,20 +22,20 @@ pub struct Joined<L: Lanes> {
 #[inline(always)]
 pub fn joined<L: Lanes>(
     l: L,
-    (scene, touching): (&Scene, &Touching),
+    (scene, joints): (&Scene, &Joints),
     (hits, at): (&Stream, usize),
     outside: L::M,
     alone: Joined<L>,
 ) -> Joined<L> {
     let active = l.bitmask(hits.active(l, at));
-    let is_joined = |lane: usize| !touching.partners(hits.value(PRIM, at + lane)).is_empty();
+    let is_joined = |lane: usize| !joints.partners(hits.value(PRIM, at + lane)).is_empty();
     let joined = (0..L::WIDTH).filter(|lane| active >> lane & 1 == 1 && is_joined(*lane));
     let (outside, mut columns, mut beyond) = (l.bitmask(outside), [[0.0; 16]; 3], [0; 16]);
     let V3 { x, y, z } = alone.index;
     [x, y, z].into_iter().zip(&mut columns).for_each(|(value, column)| l.store(value, column));
     l.store_u(alone.beyond, &mut beyond);
     for lane in joined {
-        let passage = Passage::new((scene, touching), (hits, at + lane), outside >> lane & 1 == 1);
+        let passage = Passage::new((scene, joints), (hits, at + lane), outside >> lane & 1 == 1);
         let index = passage.index(scene);
         columns.iter_mut().zip(index).for_each(|(column, value)| column[lane] = value);
         beyond[lane] = scene.media.as_ref().map_or(CLEAR, |media| passage.beyond(media));
@@ -57,16 +57,16 @@ struct Passage {
 
 impl Passage {
     #[inline(never)]
-    fn new((scene, touching): (&Scene, &Touching), (hits, at): (&Stream, usize), outside: bool) -> Self {
+    fn new((scene, joints): (&Scene, &Joints), (hits, at): (&Stream, usize), outside: bool) -> Self {
         let ray = Lone {
             origin: hits.triple(ORIGIN, at),
             direction: hits.triple(DIRECTION, at),
             leaves: hits.value(LEAVES, at),
         };
         let hit = hits.value(PRIM, at);
-        let (mut through, mut kinds) = (vec![(hit, outside)], vec![(touching.material(hit), true)]);
-        for partner in touching.partners(hit) {
-            let kind = (touching.material(partner.prim), partner.same_way);
+        let (mut through, mut kinds) = (vec![(hit, outside)], vec![(joints.material(hit), true)]);
+        for partner in joints.partners(hit) {
+            let kind = (joints.material(partner.prim), partner.same_way);
             if !kinds.contains(&kind) && scene.lies_there(partner.prim, &ray) {
                 kinds.push(kind);
                 through.push((partner.prim, partner.same_way == outside));

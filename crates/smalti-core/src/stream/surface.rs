@@ -66,9 +66,9 @@ fn of<L: Lanes>(l: L, scene: &Scene, hits: &Stream, at: usize, prim: L::U) -> Hi
         scale = l.select(is_sphere, geometry.max_abs(l) + w, scale);
     }
     let outside = l.lt(normal.dot(l, direction), l.f(0.0));
-    let room = scene.touching.as_ref().map(
+    let room = scene.room.as_ref().map(
         #[inline(always)]
-        |touching| [l.gather(&touching.room[0], prim), l.gather(&touching.room[1], prim)],
+        |room| [l.gather(&room.outside, prim), l.gather(&room.inside, prim)],
     );
     Hit { point: on_surface, normal, outside, colour: V3::new(r, g, b), surface, scale, room }
 }

@@ -5,15 +5,19 @@
 //! parallel, and spheres within spheres. [`settle`] makes a compiled scene right by them; scenes without such pairs are
 //! left as they are, to the bit.
 
+mod joints;
+mod meeting;
+mod numbers;
 mod objects;
 mod overlap;
 mod planes;
+mod room;
 mod settle;
 mod spheres;
-mod touching;
 
+pub use joints::Joints;
+pub use room::Room;
 pub(super) use settle::settle;
-pub use touching::Touching;
 
 use super::world::World;
 use super::{Frame, Origin};

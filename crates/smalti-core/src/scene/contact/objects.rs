@@ -23,6 +23,13 @@ pub struct Candidate {
     pub high: [f32; 3],
 }
 
+impl Candidate {
+    /// Whether the boxes meet.
+    pub fn meets(&self, other: &Self) -> bool {
+        (0..3).all(|k| self.low[k] <= other.high[k] && other.low[k] <= self.high[k])
+    }
+}
+
 /// A polygon or a mesh.
 struct Object {
     clear: bool,

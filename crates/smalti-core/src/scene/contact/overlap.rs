@@ -51,6 +51,9 @@ pub fn of(a: &Corners, b: &Corners) -> Option<Overlap> {
         return None;
     }
     let axis = dominant(a.normal);
+    if is_beside(&a.points, &b.points, axis) || is_beside(&b.points, &a.points, axis) {
+        return None;
+    }
     let common = clipped(&a.points, &b.points, axis);
     let area = |points: &[DVec3]| if points.len() < 3 { 0.0 } else { newell(points).length() };
     if area(&common) <= AREA * area(&a.points).min(area(&b.points)) {
@@ -77,13 +80,29 @@ fn flat(point: DVec3, axis: usize) -> DVec2 {
     DVec2::new(point[(axis + 1) % 3], point[(axis + 2) % 3])
 }
 
+/// Edges of a polygon, seen along an axis.
+fn edges(points: &[DVec3], axis: usize) -> impl Iterator<Item = (DVec2, DVec2)> {
+    let next = points.iter().cycle().skip(1);
+    points.iter().zip(next).map(move |(a, b)| (flat(*a, axis), flat(*b, axis)))
+}
+
+/// 1 where the corners go round to the left, seen along an axis, and -1 where they go to the right.
+fn turn(points: &[DVec3], axis: usize) -> f64 {
+    let first = flat(points[0], axis);
+    edges(points, axis).map(|(a, b)| (a - first).perp_dot(b - first)).sum::<f64>().signum()
+}
+
+/// Whether all corners of `other` are beyond one edge, or on it: so it is with neighbours.
+fn is_beside(points: &[DVec3], other: &[DVec3], axis: usize) -> bool {
+    let turn = turn(points, axis);
+    edges(points, axis).any(|(a, b)| other.iter().all(|point| turn * (b - a).perp_dot(flat(*point, axis) - a) <= 0.0))
+}
+
 /// `subject` (in its own plane) cut off along every edge of `by`, both seen along `axis` (Sutherland and Hodgman 1974).
 fn clipped(subject: &[DVec3], by: &[DVec3], axis: usize) -> Vec<DVec3> {
-    let edges = || by.iter().zip(by.iter().cycle().skip(1)).map(|(a, b)| (flat(*a, axis), flat(*b, axis)));
-    let first = flat(by[0], axis);
-    let turn = edges().map(|(a, b)| (a - first).perp_dot(b - first)).sum::<f64>().signum();
+    let turn = turn(by, axis);
     let mut left = subject.to_vec();
-    for (a, b) in edges() {
+    for (a, b) in edges(by, axis) {
         let side = |point: DVec3| turn * (b - a).perp_dot(flat(point, axis) - a);
         let mut kept = Vec::with_capacity(left.len() + 1);
         for (from, to) in left.iter().zip(left.iter().cycle().skip(1)) {

@@ -1,7 +1,6 @@
 //! From candidates to pairs: sorted into drawers by their planes, so that few have to be compared.
 
-use std::collections::HashMap;
-
+use super::meeting;
 use super::objects::Candidate;
 use super::overlap::{self, Corners};
 use super::{NEAR, ONE_PLACE, Pair, ROUNDING, STEP};
@@ -20,19 +19,29 @@ const DRAWER: f64 = 3e-5;
 
 /// Pairs among `faces`, each once.
 pub fn pairs(world: &World, frame: &Frame, faces: &[Candidate]) -> Vec<Pair> {
-    let mut drawers: HashMap<i64, Vec<u32>> = HashMap::new();
-    for (index, face) in faces.iter().enumerate() {
-        drawers.entry(drawer(face)).or_default().push(index as u32);
-    }
-    let mut numbers: Vec<i64> = drawers.keys().copied().collect();
-    numbers.sort_unstable();
+    let mut sorted: Vec<(i64, &Candidate)> = faces.iter().map(|face| (drawer(face), face)).collect();
+    sorted.sort_by_key(|(number, _)| *number);
+    let drawers: Vec<&[(i64, &Candidate)]> = sorted.chunk_by(|a, b| a.0 == b.0).collect();
     let mut found = Vec::new();
-    for number in numbers {
-        let own = &drawers[&number];
-        let next = drawers.get(&(number + 1)).map_or(&[][..], |next| &next[..]);
-        sweep(faces, own, next, &mut |a, b| found.extend(pair(world, frame, &faces[a as usize], &faces[b as usize])));
+    let mut give = |a: &Candidate, b: &Candidate| {
+        if may_pair(a, b) {
+            let (a, b) = if a.origin < b.origin { (a, b) } else { (b, a) };
+            found.extend(pair(world, frame, a, b));
+        }
+    };
+    for (at, own) in drawers.iter().enumerate() {
+        meeting::within(content(own), &mut give);
+        if let Some(next) = drawers.get(at + 1).filter(|next| next[0].0 == own[0].0 + 1) {
+            meeting::between(content(own), content(next), &mut give);
+        }
     }
+    found.sort_unstable_by_key(|pair| pair.of);
     found
+}
+
+/// The faces in a drawer.
+fn content<'f>(drawer: &[(i64, &'f Candidate)]) -> Vec<&'f Candidate> {
+    drawer.iter().map(|(_, face)| *face).collect()
 }
 
 /// The drawer of a plane, whichever side it shows.
@@ -42,41 +51,10 @@ fn drawer(face: &Candidate) -> i64 {
     (figure.abs() / DRAWER) as i64
 }
 
-/// Gives every two faces whose boxes meet, one of `own` and the other of `own` or `next`.
-fn sweep(faces: &[Candidate], own: &[u32], next: &[u32], give: &mut impl FnMut(u32, u32)) {
-    if own.len() + next.len() < 2 {
-        return;
-    }
-    let mut all: Vec<(u32, bool)> = own.iter().map(|face| (*face, true)).collect();
-    all.extend(next.iter().map(|face| (*face, false)));
-    let axis = widest(faces, &all);
-    let low = |face: u32| faces[face as usize].low[axis];
-    all.sort_by(|a, b| low(a.0).total_cmp(&low(b.0)).then(a.0.cmp(&b.0)));
-    for (at, &(a, is_own)) in all.iter().enumerate() {
-        let until = faces[a as usize].high[axis];
-        for &(b, also_own) in all[at + 1..].iter().take_while(|b| low(b.0) <= until) {
-            if (is_own || also_own) && may_pair(&faces[a as usize], &faces[b as usize]) {
-                give(a.min(b), a.max(b));
-            }
-        }
-    }
-}
-
-fn widest(faces: &[Candidate], all: &[(u32, bool)]) -> usize {
-    let spread = |axis: usize| {
-        let lows = all.iter().map(|(face, _)| faces[*face as usize].low[axis]);
-        let (least, most) =
-            lows.fold((f32::INFINITY, f32::NEG_INFINITY), |(least, most), low| (least.min(low), most.max(low)));
-        most - least
-    };
-    (0..3).reduce(|a, b| if spread(b) > spread(a) { b } else { a }).unwrap_or(0)
-}
-
 /// What can be excluded without a look at corners. Of one opaque mesh no two faces pair: the first of them is seen.
 fn may_pair(a: &Candidate, b: &Candidate) -> bool {
-    let meet = (0..3).all(|k| a.low[k] <= b.high[k] && b.low[k] <= a.high[k]);
     let [p, q] = [a.plane, b.plane].map(|plane| glam::DVec4::from_array(plane.map(f64::from)).truncate());
-    meet && (a.object != b.object || a.clear) && p.cross(q).length_squared() < PARALLEL * PARALLEL
+    (a.object != b.object || a.clear) && p.cross(q).length_squared() < PARALLEL * PARALLEL
 }
 
 fn pair(world: &World, frame: &Frame, a: &Candidate, b: &Candidate) -> Option<Pair> {

@@ -1,14 +1,13 @@
 //! What a compiled scene needs where surfaces coincide: one plane for all of them, so that they are met at one distance;
 //! numbers in the order in which they are to be seen, as ties go to the lowest; and what touches what.
 
-use std::collections::HashMap;
-
-use super::{Pair, Touching, pairs};
+use super::numbers::Numbers;
+use super::{Joints, Room, pairs};
 use crate::accel::cones::leader;
 use crate::light::table::NO_SURFACE;
 use crate::mutant::mutant;
+use crate::scene::Scene;
 use crate::scene::world::World;
-use crate::scene::{Origin, Scene};
 
 /// Settles what coincides, and enters what is near. Does nothing to a scene without such pairs.
 pub fn settle(scene: &mut Scene, world: &World) {
@@ -16,23 +15,16 @@ pub fn settle(scene: &mut Scene, world: &World) {
     if found.is_empty() {
         return;
     }
-    let coincident: Vec<Pair> = found.iter().copied().filter(Pair::coincides).collect();
-    share_planes(scene, &numbered(scene, &coincident));
-    if numbered(scene, &coincident).iter().any(|(_, [a, b])| rank(scene, world, *a) > rank(scene, world, *b)) {
+    let mut numbered = Numbers::of(scene, world).numbered(&found);
+    let coincident: Vec<[u32; 2]> =
+        numbered.iter().filter(|(pair, _)| pair.coincides()).map(|(_, prims)| *prims).collect();
+    share_planes(scene, &coincident);
+    if coincident.iter().any(|[a, b]| rank(scene, world, *a) > rank(scene, world, *b)) {
         renumber(scene, world);
+        numbered = Numbers::of(scene, world).numbered(&found);
     }
-    scene.touching = Some(Touching::new(scene, world, &numbered(scene, &found)));
-}
-
-/// The pairs with their primitives, the lower number first; what was left out for want of an area is in none.
-fn numbered(scene: &Scene, pairs: &[Pair]) -> Vec<(Pair, [u32; 2])> {
-    let numbers: HashMap<Origin, u32> = scene.origins.iter().copied().zip(0..).collect();
-    let numbered = |pair: &Pair| {
-        let [a, b] = pair.of.map(|origin| numbers.get(&origin).copied());
-        let (a, b) = (a?, b?);
-        Some(if a < b { (*pair, [a, b]) } else { (pair.turned(), [b, a]) })
-    };
-    pairs.iter().filter_map(numbered).collect()
+    scene.room = Room::beside(scene, &numbered);
+    scene.joints = Joints::among(scene, world, &numbered);
 }
 
 /// What is seen first of surfaces in one place: what emits, as shadow rays find it too; then what is opaque, as light in
@@ -45,14 +37,17 @@ fn rank(scene: &Scene, world: &World, prim: u32) -> (bool, bool, (usize, u32)) {
 }
 
 /// Gives what coincides the plane, or sphere, and the surface id of the lowest number among it.
-fn share_planes(scene: &mut Scene, pairs: &[(Pair, [u32; 2])]) {
+fn share_planes(scene: &mut Scene, pairs: &[[u32; 2]]) {
+    if pairs.is_empty() {
+        return;
+    }
     let mut leaders: Vec<u32> = (0..scene.shades.len() as u32).collect();
     let mut ids: Vec<u32> = (0..scene.planes + scene.spheres.len() as u32).collect();
-    for (_, prims) in pairs {
+    for prims in pairs {
         join(&mut leaders, *prims);
         join(&mut ids, prims.map(|prim| scene.surface(prim)));
     }
-    for prim in pairs.iter().flat_map(|(_, prims)| *prims) {
+    for prim in pairs.iter().flatten().copied() {
         take_geometry(scene, prim, leader(&mut leaders, prim));
     }
     let of_faces = scene.faces.iter_mut().map(|face| &mut face.surface);

@@ -1,6 +1,7 @@
 use glam::DVec3;
 
 use super::*;
+use crate::scene::newell;
 use crate::scene::world::{Material, Mesh, Polygon, Sphere, World};
 
 /// Corners of a square of this half width about a point, seen from above.
@@ -123,4 +124,37 @@ fn spheres_pair_where_one_is_around_the_other() {
     assert_eq!(balls(0.5, 0.5), [], "they touch at a point");
     assert_eq!(balls(1.0, 2.0), []);
     assert_eq!(balls(0.9, 0.0), []);
+}
+
+/// A plate of glass that stands on another, both cut into many triangles in a way of their own: every two that lie over each
+/// other are found, once, and neighbours are not.
+#[test]
+fn finely_cut_planes_pair_where_they_overlap() {
+    let plane = |cuts: u32, turned: bool| {
+        let at = |i: u32, j: u32| DVec3::new(f64::from(i), f64::from(j), 0.0) / f64::from(cuts);
+        let cell = |k: u32| {
+            let (i, j) = (k % cuts, k / cuts);
+            [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]]
+        };
+        let mut vertices: Vec<DVec3> = (0..cuts * cuts).flat_map(cell).flatten().collect();
+        if turned {
+            vertices.reverse();
+        }
+        let faces = (0..2 * cuts * cuts).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+        Mesh { vertices, faces, material: 1, radiance: None }
+    };
+    let area = |corners: &[DVec3]| newell(corners).length() / 2.0;
+    for (one, other) in [(1, 1), (1, 40), (40, 1), (24, 24), (24, 48)] {
+        let world = World { meshes: vec![plane(one, false), plane(other, true)], ..world() };
+        let mut pairs: Vec<[Origin; 2]> = found(&world).iter().map(|pair| pair.of).collect();
+        let count = pairs.len();
+        pairs.dedup();
+        assert_eq!(pairs.len(), count, "each once");
+        // The diagonals are the same, so that of two faces one lies on the other, and they cover the square once.
+        let common = pairs.iter().map(|pair| {
+            let [a, b] = pair.map(|face| area(&world.corners(face)));
+            a.min(b)
+        });
+        assert!((common.sum::<f64>() - 1.0).abs() < 1e-9, "{one} on {other}: {count}");
+    }
 }
