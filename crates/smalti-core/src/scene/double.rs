@@ -1,7 +1,8 @@
 //! What a ray hits, in f64 and on the scene as it was written: every primitive tested, no frame, no tree, no lanes.
 
-use super::{Origin, World, newell};
 use glam::DVec3;
+
+use super::{Origin, World, newell};
 
 /// A ray in the user's units.
 #[derive(Clone, Copy, Debug)]

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::meeting::{self, Extent};
 use super::{NEAR, STEP};
 use crate::scene::world::World;
 use crate::scene::{Frame, Origin, newell};
@@ -17,24 +18,15 @@ pub struct Candidate {
     pub clear: bool,
     /// Unit normal and distance of its plane.
     pub plane: [f32; 4],
-    /// Low corner of its box.
-    pub low: [f32; 3],
-    /// High corner of its box.
-    pub high: [f32; 3],
-}
-
-impl Candidate {
-    /// Whether the boxes meet.
-    pub fn meets(&self, other: &Self) -> bool {
-        (0..3).all(|k| self.low[k] <= other.high[k] && other.low[k] <= self.high[k])
-    }
+    /// The box around it, wider by as much as is near.
+    pub extent: Extent,
 }
 
 /// A polygon or a mesh.
 struct Object {
     clear: bool,
-    low: DVec3,
-    high: DVec3,
+    extent: Extent,
+    /// Those whose boxes its own meets.
     others: Vec<u32>,
 }
 
@@ -43,8 +35,7 @@ const MOST_OTHERS: usize = 32;
 
 /// The faces of `world` that may lie on another one.
 pub fn candidates(world: &World, frame: &Frame) -> Vec<Candidate> {
-    let mut objects = objects(world, frame);
-    meet(&mut objects);
+    let objects = objects(world, frame);
     let mut found = Vec::new();
     let polygons = world.polygons.len();
     for (index, (polygon, object)) in world.polygons.iter().zip(&objects).enumerate() {
@@ -71,62 +62,30 @@ pub fn candidates(world: &World, frame: &Frame) -> Vec<Candidate> {
 
 fn objects(world: &World, frame: &Frame) -> Vec<Object> {
     let object = |vertices: &[DVec3], material: usize| {
-        let (low, high) = bounds(vertices.iter().map(|v| frame.point(*v)));
-        Object { clear: world.materials[material].is_dielectric(), low, high, others: Vec::new() }
+        let extent = Extent::around(vertices.iter().map(|v| frame.point(*v)), NEAR * STEP);
+        Object { clear: world.materials[material].is_dielectric(), extent, others: Vec::new() }
     };
     let polygons = world.polygons.iter().map(|polygon| object(&polygon.vertices, polygon.material));
     let meshes = world.meshes.iter().map(|mesh| object(&mesh.vertices, mesh.material));
-    polygons.chain(meshes).collect()
-}
-
-/// Low and high corner of the box around points, wider by as much as is near.
-fn bounds(points: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
-    let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    let (low, high) = points.fold(none, |(low, high), point| (low.min(point), high.max(point)));
-    (low - NEAR * STEP, high + NEAR * STEP)
-}
-
-/// Enters into every object those whose boxes meet its own.
-fn meet(objects: &mut [Object]) {
-    let axis = widest(objects);
-    let mut order: Vec<u32> = (0..objects.len() as u32).collect();
-    order.sort_by(|a, b| objects[*a as usize].low[axis].total_cmp(&objects[*b as usize].low[axis]));
-    for (at, &a) in order.iter().enumerate() {
-        let until = objects[a as usize].high[axis];
-        let after = order[at + 1..].iter().take_while(|b| objects[**b as usize].low[axis] <= until);
-        let met: Vec<u32> = after.copied().filter(|b| overlap(&objects[a as usize], &objects[*b as usize])).collect();
-        met.iter().for_each(|b| objects[*b as usize].others.push(a));
-        objects[a as usize].others.extend(met);
-    }
-}
-
-/// The axis along which the objects are spread widest.
-fn widest(objects: &[Object]) -> usize {
-    let lows = objects.iter().map(|object| object.low).filter(|low| low.is_finite());
-    let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    let (least, most) = lows.fold(none, |(least, most), low| (least.min(low), most.max(low)));
-    let spread = most - least;
-    (0..3).reduce(|a, b| if spread[b] > spread[a] { b } else { a }).unwrap_or(0)
-}
-
-fn overlap(a: &Object, b: &Object) -> bool {
-    a.low.cmple(b.high).all() && b.low.cmple(a.high).all()
+    let mut objects: Vec<Object> = polygons.chain(meshes).collect();
+    let boxes = objects.iter().map(|object| object.extent).zip(0..).collect();
+    meeting::within(boxes, &mut |a, b| {
+        objects[a as usize].others.push(b);
+        objects[b as usize].others.push(a);
+    });
+    objects
 }
 
 fn near_others(corners: &[DVec3; 3], object: &Object, objects: &[Object]) -> bool {
-    let (low, high) = bounds(corners.iter().copied());
-    let meets = |other: &u32| {
-        let other = &objects[*other as usize];
-        low.cmple(other.high).all() && other.low.cmple(high).all()
-    };
-    object.others.len() > MOST_OTHERS || object.others.iter().any(meets)
+    let extent = Extent::around(corners.iter().copied(), NEAR * STEP);
+    let near = |other: &u32| objects[*other as usize].extent.meets(&extent);
+    object.others.len() > MOST_OTHERS || object.others.iter().any(near)
 }
 
 /// `None` without an area.
 fn candidate(corners: &[DVec3], origin: Origin, (index, object): (usize, &Object)) -> Option<Candidate> {
     let normal = newell(corners).try_normalize()?;
-    let (low, high) = bounds(corners.iter().copied());
     let plane = normal.extend(normal.dot(corners[0])).as_vec4().to_array();
-    let [low, high] = [low, high].map(|corner| corner.as_vec3().to_array());
-    Some(Candidate { origin, object: index as u32, clear: object.clear, plane, low, high })
+    let extent = Extent::around(corners.iter().copied(), NEAR * STEP);
+    Some(Candidate { origin, object: index as u32, clear: object.clear, plane, extent })
 }

@@ -1,11 +1,13 @@
 //! From candidates to pairs: sorted into drawers by their planes, so that few have to be compared.
 
+use glam::DVec4;
+
 use super::meeting;
 use super::objects::Candidate;
 use super::overlap::{self, Corners};
 use super::{NEAR, ONE_PLACE, Pair, ROUNDING, STEP};
-use crate::scene::Frame;
 use crate::scene::world::World;
+use crate::scene::{Frame, Origin};
 
 /// Planes whose normals differ by more than this are not parallel.
 const PARALLEL: f64 = 1e-5;
@@ -19,13 +21,15 @@ const DRAWER: f64 = 3e-5;
 
 /// Pairs among `faces`, each once.
 pub fn pairs(world: &World, frame: &Frame, faces: &[Candidate]) -> Vec<Pair> {
-    let mut sorted: Vec<(i64, &Candidate)> = faces.iter().map(|face| (drawer(face), face)).collect();
-    sorted.sort_by_key(|(number, _)| *number);
-    let drawers: Vec<&[(i64, &Candidate)]> = sorted.chunk_by(|a, b| a.0 == b.0).collect();
+    let mut sorted: Vec<(i64, u32)> = faces.iter().map(drawer).zip(0..).collect();
+    sorted.sort_unstable();
+    let drawers: Vec<&[(i64, u32)]> = sorted.chunk_by(|a, b| a.0 == b.0).collect();
+    let content =
+        |drawer: &[(i64, u32)]| drawer.iter().map(|(_, face)| (faces[*face as usize].extent, *face)).collect();
     let mut found = Vec::new();
-    let mut give = |a: &Candidate, b: &Candidate| {
-        if may_pair(a, b) {
-            let (a, b) = if a.origin < b.origin { (a, b) } else { (b, a) };
+    let mut give = |a: u32, b: u32| {
+        let (a, b) = (&faces[a.min(b) as usize], &faces[a.max(b) as usize]);
+        if may_pair(world, a, b) {
             found.extend(pair(world, frame, a, b));
         }
     };
@@ -39,11 +43,6 @@ pub fn pairs(world: &World, frame: &Frame, faces: &[Candidate]) -> Vec<Pair> {
     found
 }
 
-/// The faces in a drawer.
-fn content<'f>(drawer: &[(i64, &'f Candidate)]) -> Vec<&'f Candidate> {
-    drawer.iter().map(|(_, face)| *face).collect()
-}
-
 /// The drawer of a plane, whichever side it shows.
 fn drawer(face: &Candidate) -> i64 {
     let [x, y, z, distance] = face.plane.map(f64::from);
@@ -52,9 +51,18 @@ fn drawer(face: &Candidate) -> i64 {
 }
 
 /// What can be excluded without a look at corners. Of one opaque mesh no two faces pair: the first of them is seen.
-fn may_pair(a: &Candidate, b: &Candidate) -> bool {
-    let [p, q] = [a.plane, b.plane].map(|plane| glam::DVec4::from_array(plane.map(f64::from)).truncate());
-    (a.object != b.object || a.clear) && p.cross(q).length_squared() < PARALLEL * PARALLEL
+fn may_pair(world: &World, a: &Candidate, b: &Candidate) -> bool {
+    let [p, q] = [a.plane, b.plane].map(|plane| DVec4::from_array(plane.map(f64::from)).truncate());
+    (a.object != b.object || (a.clear && !(p.dot(q) > 0.0 && are_neighbours(world, a.origin, b.origin))))
+        && p.cross(q).length_squared() < PARALLEL * PARALLEL
+}
+
+/// Whether two triangles of one mesh share an edge or a corner; showing one side, they lie beside each other.
+fn are_neighbours(world: &World, a: Origin, b: Origin) -> bool {
+    let (Origin::Mesh(mesh, a), Origin::Mesh(_, b)) = (a, b) else { return false };
+    let faces = &world.meshes[mesh as usize].faces;
+    let shared = faces[a as usize].iter().filter(|corner| faces[b as usize].contains(corner)).count();
+    matches!(shared, 1 | 2)
 }
 
 fn pair(world: &World, frame: &Frame, a: &Candidate, b: &Candidate) -> Option<Pair> {

@@ -1,25 +1,21 @@
 //! Spheres that are one, or lie within another with so small a gap all around that rays would miss it.
 
+use super::meeting::{self, Extent};
 use super::{NEAR, ONE_PLACE, Pair, STEP};
 use crate::scene::world::{Sphere, World};
 use crate::scene::{Frame, Origin};
 
 /// Pairs of spheres. Spheres that touch at a point are none.
 pub fn pairs(world: &World, frame: &Frame) -> Vec<Pair> {
-    let spheres = &world.spheres;
-    let mut order: Vec<u32> = (0..spheres.len() as u32).collect();
-    let low = |index: u32| spheres[index as usize].centre.x - spheres[index as usize].radius;
-    order.sort_by(|a, b| low(*a).total_cmp(&low(*b)).then(a.cmp(b)));
+    // One that lies around another, or in it, has its low corner where that has it, but for the gap.
+    let low_corner = |ball: &Sphere| {
+        let corner = frame.point(ball.centre) - ball.radius * frame.scale;
+        Extent::around([corner].into_iter(), 2.0 * NEAR * STEP * size(ball, frame))
+    };
+    let corners = world.spheres.iter().map(low_corner).zip(0..).collect();
     let mut found = Vec::new();
-    for (at, &a) in order.iter().enumerate() {
-        // One that lies around this one, or in it, begins where it begins, but for the gap.
-        let largest = frame.point(spheres[a as usize].centre).abs().max_element() / frame.scale;
-        let reach = 2.0 * NEAR * STEP * (largest + spheres[a as usize].radius);
-        let until = low(a) + reach;
-        for &b in order[at + 1..].iter().take_while(|b| low(**b) <= until) {
-            found.extend(pair(world, frame, a.min(b), a.max(b)));
-        }
-    }
+    meeting::within(corners, &mut |a, b| found.extend(pair(world, frame, a.min(b), a.max(b))));
+    found.sort_unstable_by_key(|pair| pair.of);
     found
 }
 

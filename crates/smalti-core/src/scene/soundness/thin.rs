@@ -46,7 +46,12 @@ fn is_lost(world: &World, pair: &Pair) -> bool {
         return steps < if is_sphere { 2.0 * STEPS } else { STEPS };
     }
     let [a, b] = pair.of.map(|origin| world.skin(origin).0);
+    let one_thing = match pair.of {
+        [Origin::Polygon(_), Origin::Polygon(_)] => a == b,
+        [Origin::Mesh(one, _), Origin::Mesh(other, _)] => one == other,
+        _ => false,
+    };
     // A pane whose two faces have become one; not two things that stand at each other.
-    let is_pane = a == b && !pair.same_way && pair.gap < 0.0 && world.materials[a].is_dielectric();
+    let is_pane = one_thing && !pair.same_way && pair.gap < 0.0 && world.materials[a].is_dielectric();
     is_pane && steps > WRITTEN_AS_ONE
 }

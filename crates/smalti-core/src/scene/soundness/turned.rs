@@ -70,16 +70,19 @@ fn dielectric(world: &World, frame: &Frame, body: &Body, tests: &mut usize) -> O
     let primitives =
         world.polygons.len() + world.spheres.len() + world.meshes.iter().map(|m| m.faces.len()).sum::<usize>();
     let rays = RAYS.min(*tests / primitives.max(1));
-    *tests -= rays * primitives;
-    let behind: Vec<Option<Hit>> = inward(world, body, rays).map(|ray| nearest(world, &ray, 0.0)).collect();
+    // No more rays are followed than it takes.
+    let mut behind = inward(world, body, rays).map(|ray| {
+        *tests -= primitives;
+        nearest(world, &ray, 0.0)
+    });
     if body.free.is_empty() {
         // The inner wall of a hollow thing: behind it is the glass, which ends at its outer wall.
-        let is_leaving = |hit: &Hit| !hit.outside && world.materials[world.skin(hit.origin).0].is_dielectric();
-        let is_inner = rays == 0 || behind.iter().flatten().any(is_leaving);
+        let is_leaving = |hit: Hit| !hit.outside && world.materials[world.skin(hit.origin).0].is_dielectric();
+        let is_inner = rays == 0 || behind.any(|hit| hit.is_some_and(is_leaving));
         return (!is_inner).then_some(Finding::InsideOut { surface, material });
     }
     // Water ends at the walls of its pool; a window in a wall does as well, but there is no end behind it.
-    let ends = rays > 0 && behind.iter().all(Option::is_some) && sealed(world, frame, &body.free);
+    let ends = rays > 0 && behind.all(|hit| hit.is_some()) && sealed(world, frame, &body.free);
     (!ends).then_some(Finding::Open { surface, material, edges: body.free.len() })
 }
 
