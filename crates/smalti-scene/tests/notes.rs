@@ -169,7 +169,7 @@ fn inside_out_and_thin_and_coarse_things_are_noted() {
     let loaded = alone(&format!("{}{}", ball("-1e6", "1e6"), ball("0.5", "0.5")));
     let notes = warnings(&loaded);
     assert!(
-        matches!(&notes[..], [note] if note.contains("8 of which are the sphere in line 14 (1.0e0 m)")),
+        matches!(&notes[..], [note] if note.contains("the sphere in line 14 beside it is 1 m across, 8.4 times that")),
         "{notes:?}"
     );
     let shell = |radius: &str| {
@@ -178,5 +178,5 @@ fn inside_out_and_thin_and_coarse_things_are_noted() {
     assert_eq!(warnings(&shell("0.99")), [""; 0]);
     let loaded = shell("0.9999998");
     let notes = warnings(&loaded);
-    assert!(matches!(&notes[..], [note] if note.contains("steps of the coordinates")), "{notes:?}");
+    assert!(matches!(&notes[..], [note] if note.contains("from the sphere in line 16 (`glass`)")), "{notes:?}");
 }

@@ -16,8 +16,8 @@ impl Finding {
     pub fn says(&self, names: &dyn Names) -> String {
         match *self {
             Finding::Open { surface, material, edges } => format!(
-                "the surface of {} is open: {} ends at {}; light that goes in comes not out again, and counts by the \
-                 square of the index too little or too much",
+                "the surface of {} is open: {} ends at {}; light that goes in does not come out again, and is too bright or \
+                 too dark by the square of the index: give it a thickness",
                 names.material(material),
                 body(names, surface),
                 counted(edges, "free edge"),
@@ -36,35 +36,37 @@ impl Finding {
                     true => names.material(one),
                     false => format!("{} and {}", names.material(one), names.material(other)),
                 };
-                let steps = if steps < 10.0 { format!("{steps:.1}") } else { format!("{steps:.0}") };
-                let more = if places > 1 { format!("; {} such places", places) } else { String::new() };
+                let more = if places > 1 { format!("; there are {places} such places") } else { String::new() };
                 format!(
-                    "{} is {thickness:.1e} m from {} ({materials}), {steps} steps of the coordinates there: what is \
-                     between may be lost{more}",
+                    "{} is {} from {} ({materials}), {} times the length by which coordinates are rounded: what is between the two may be \
+                     lost{more}",
                     names.surface(a),
+                    metres(thickness),
                     names.surface(b),
+                    figure(steps),
                 )
             }
-            Finding::Rough { sphere, across, rounding, beside, extent, things } => {
-                let more =
-                    if things > 1 { format!(" and {} more", counted(things - 1, "thing")) } else { String::new() };
-                format!(
-                    "{}, {across:.1e} m across, is rounded to {rounding:.1e} m, {:.0} of which are {} ({extent:.1e} m){more} \
-                     beside it: light and shadows there are wrong; a plane would do",
-                    names.surface(sphere),
-                    extent / rounding,
-                    names.surface(beside),
-                )
-            }
-            Finding::Coarse { surface, extent, steps, largest, scene, things } => {
-                let more = if things > 1 { format!(", and {} more hardly more", things - 1) } else { String::new() };
-                format!(
-                    "{} is {extent:.1e} m across, {steps:.0} steps of the coordinates where it lies{more}: the scene is \
-                     {scene:.1e} m large, by {}; shapes and light there may be drawn wrong",
-                    names.surface(surface),
-                    names.surface(largest),
-                )
-            }
+            Finding::Rough { sphere, across, rounding, beside, extent, things } => format!(
+                "{}, {} across, is rounded to {}; {} beside it is {} across, {} times that{}: light and shadows there are wrong; a \
+                 plane would do",
+                names.surface(sphere),
+                metres(across),
+                metres(rounding),
+                names.surface(beside),
+                metres(extent),
+                figure(extent / rounding),
+                and_more(things),
+            ),
+            Finding::Coarse { surface, extent, steps, largest, scene, things } => format!(
+                "{} is {} across, {} times the length by which coordinates are rounded where it lies{}: the scene is {} large, by {}; shapes \
+                 and light there may be wrong",
+                names.surface(surface),
+                metres(extent),
+                figure(steps),
+                and_more(things),
+                metres(scene),
+                names.surface(largest),
+            ),
         }
     }
 }
@@ -79,4 +81,29 @@ fn body(names: &dyn Names, Surface { face, faces, count }: Surface) -> String {
 
 fn counted(count: usize, name: &str) -> String {
     format!("{count} {name}{}", if count == 1 { "" } else { "s" })
+}
+
+/// Where more than one thing is so small.
+fn and_more(things: usize) -> String {
+    if things > 1 { format!(" (so it is with {} more)", counted(things - 1, "thing")) } else { String::new() }
+}
+
+/// A length to two digits.
+fn metres(length: f64) -> String {
+    match length {
+        0.001..100_000.0 => format!("{} m", figure(length)),
+        _ => format!("{length:.1e} m"),
+    }
+}
+
+/// A number to two digits, or whole.
+fn figure(x: f64) -> String {
+    if x < 100.0 { two_digits(x) } else { format!("{x:.0}") }
+}
+
+/// The shortest decimal that has the first two digits of a number below 100.
+fn two_digits(x: f64) -> String {
+    let decimals = (1.0 - libm::floor(libm::log10(x.max(1e-9)))).max(0.0) as usize;
+    let rounded: f64 = format!("{x:.decimals$}").parse().unwrap_or(x);
+    rounded.to_string()
 }
