@@ -3,8 +3,10 @@
 
 mod contact;
 mod counts;
+mod huge;
 mod places;
 mod shapes;
+mod unsound;
 mod values;
 
 use smalti_core::render::Level;
