@@ -1,6 +1,5 @@
 //! Glass against glass.
 
-use glam::DVec3;
 use smalti_core::scene::World;
 use smalti_core::scene::world::Material;
 use smalti_core::settings::{Integrator, Settings};

@@ -6,9 +6,9 @@ mod thin;
 
 use glam::{DQuat, DVec3};
 use smalti_core::scene::World;
-use smalti_core::scene::world::{Material, Polygon};
+use smalti_core::scene::world::Polygon;
 use smalti_core::settings::{Integrator, Settings};
-use smalti_tests::build::{at, camera, material, mesh};
+use smalti_tests::build::{at, camera, mesh};
 use smalti_tests::estimate::settings;
 
 /// Reflectance of glass of index 1.5 for perpendicular light.

@@ -170,6 +170,10 @@ fn a_lamp_may_shine_inwards_on_something() {
         };
         assert_eq!(found(&lamp(false)), []);
         assert!(matches!(found(&lamp(true))[..], [Finding::ShinesInwards { .. }]));
+        // Its own corners do not count, which lie within the box around it.
+        let mut leaning = world();
+        put(&mut leaning, turn(reversed(box_of(DVec3::ZERO, DVec3::ONE)), 1), WHITE, Some(1.0));
+        assert!(matches!(found(&leaning)[..], [Finding::ShinesInwards { .. }]));
         let mut dome = lamp(true);
         dome.cameras[0].eye = DVec3::splat(0.5);
         assert_eq!(found(&dome), [], "with a camera inside");
@@ -235,4 +239,31 @@ fn what_is_large_beside_what_is_small_is_told() {
     as_polygons(&mut world, vec![corners.to_vec()], WHITE, None);
     world.spheres = vec![ball(0.5, 0.5)];
     assert_eq!(found(&world), []);
+}
+
+/// Walls and ground are boxes with the normals out, and the water reaches into them.
+#[test]
+fn water_may_end_within_its_walls() {
+    let pool = |half: f64, put: Put| {
+        let mut world = world();
+        for (middle, half) in [
+            (DVec3::new(-1.2, 0.0, 0.0), DVec3::new(0.2, 1.4, 1.0)),
+            (DVec3::new(1.2, 0.0, 0.0), DVec3::new(0.2, 1.4, 1.0)),
+            (DVec3::new(0.0, -1.2, 0.0), DVec3::new(1.0, 0.2, 1.0)),
+            (DVec3::new(0.0, 1.2, 0.0), DVec3::new(1.0, 0.2, 1.0)),
+            (DVec3::new(0.0, 0.0, -1.2), DVec3::new(1.4, 1.4, 0.2)),
+        ] {
+            put(&mut world, box_of(middle, half), WHITE, None);
+        }
+        let water = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let corners = water.map(|(x, y)| DVec3::new(half * x, half * y, 0.3)).to_vec();
+        put(&mut world, vec![corners], GLASS, None);
+        found(&world)
+    };
+    for put in PUTS {
+        assert_eq!(pool(1.1, put), [], "into the walls");
+        assert_eq!(pool(1.0, put), [], "to the walls");
+        assert!(matches!(pool(0.9, put)[..], [Finding::Open { .. }]), "not to the walls");
+        assert!(matches!(pool(1.7, put)[..], [Finding::Open { .. }]), "beyond the walls");
+    }
 }

@@ -58,10 +58,11 @@ fn step(world: &World, frame: &Frame, pair: &Pair) -> f64 {
     pair.step.max(STEP * 2.0 / STEPS * heights.fold(0.0, f64::max) * frame.scale)
 }
 
-/// Of an eye over a face, or from the middle of a sphere.
+/// Of an eye over the plane of a face, or over a sphere.
 fn height(world: &World, surface: Origin, eye: DVec3) -> f64 {
     if let Origin::Sphere(index) = surface {
-        return world.spheres[index as usize].centre.distance(eye);
+        let ball = &world.spheres[index as usize];
+        return (ball.centre.distance(eye) - ball.radius).abs();
     }
     let corners = world.corners(surface);
     newell(&corners).normalize_or_zero().dot(eye - corners[0]).abs()

@@ -1,12 +1,14 @@
 //! Dielectrics that are open or inside out, and lamps that shine inwards.
 
+use std::collections::HashSet;
+
 use glam::DVec3;
 
 use super::bodies::{Body, bodies};
 use super::{Finding, Surface};
 use crate::scene::double::{Hit, Ray, nearest};
-use crate::scene::world::World;
-use crate::scene::{Frame, newell};
+use crate::scene::world::{Mesh, World};
+use crate::scene::{Frame, Origin, newell};
 
 /// Rays followed off a body, at most from as many of its faces.
 const RAYS: usize = 48;
@@ -82,7 +84,8 @@ fn dielectric(world: &World, frame: &Frame, body: &Body, tests: &mut usize) -> O
         return (!is_inner).then_some(Finding::InsideOut { surface, material });
     }
     // Water ends at the walls of its pool; a window in a wall does as well, but there is no end behind it.
-    let ends = rays > 0 && behind.all(|hit| hit.is_some()) && sealed(world, frame, &body.free);
+    let meets = rays > 0 && behind.all(|hit| hit.is_some());
+    let ends = meets && sealed(world, frame, &body.free, primitives, tests);
     (!ends).then_some(Finding::Open { surface, material, edges: body.free.len() })
 }
 
@@ -102,8 +105,8 @@ fn inward(world: &World, body: &Body, count: usize) -> impl Iterator<Item = Ray>
     })
 }
 
-/// Whether edges lie on opaque faces, all along; some of them stand for all.
-fn sealed(world: &World, frame: &Frame, edges: &[[DVec3; 2]]) -> bool {
+/// Whether edges lie on opaque faces or within what these enclose, all along; some of them stand for all.
+fn sealed(world: &World, frame: &Frame, edges: &[[DVec3; 2]], primitives: usize, tests: &mut usize) -> bool {
     let some = edges.iter().step_by(edges.len().div_ceil(RAYS));
     let mut points: Vec<DVec3> = some.flat_map(|[a, b]| [0.02, 0.5, 0.98].map(|share| a.lerp(*b, share))).collect();
     let opaque = |material: usize| !world.materials[material].is_dielectric();
@@ -118,7 +121,17 @@ fn sealed(world: &World, frame: &Frame, edges: &[[DVec3; 2]]) -> bool {
     for mesh in world.meshes.iter().filter(|mesh| opaque(mesh.material)) {
         mesh.faces.iter().for_each(|face| seal(&mut face.iter().map(|corner| mesh.vertices[*corner as usize])));
     }
-    points.is_empty()
+    let within = points.len() * primitives <= *tests && points.iter().all(|point| is_enclosed(world, frame, *point));
+    *tests -= if within { points.len() * primitives } else { 0 };
+    within
+}
+
+/// Whether a point of the frame lies within something opaque: a wall that is a box.
+fn is_enclosed(world: &World, frame: &Frame, point: DVec3) -> bool {
+    let origin = DVec3::from_array(frame.to_world(point.as_vec3().to_array()));
+    let ray = Ray { origin, direction: DVec3::new(0.36, 0.48, 0.8) };
+    let is_opaque = |hit: &Hit| !world.materials[world.skin(hit.origin).0].is_dielectric();
+    nearest(world, &ray, 0.0).is_some_and(|hit| !hit.outside && is_opaque(&hit))
 }
 
 fn is_on((corners, normal): (&[DVec3], DVec3), point: DVec3) -> bool {
@@ -128,13 +141,17 @@ fn is_on((corners, normal): (&[DVec3], DVec3), point: DVec3) -> bool {
 
 /// Whether neither a camera nor anything else is within the box of a lamp.
 fn is_empty(world: &World, body: &Body) -> bool {
+    let own: HashSet<Origin> = body.faces.iter().copied().collect();
     let corners = body.faces.iter().flat_map(|face| world.corners(*face));
     let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let (low, high) = corners.fold(none, |(low, high), corner| (low.min(corner), high.max(corner)));
     let within = |point: DVec3| point.cmpgt(low).all() && point.cmplt(high).all();
-    let of_polygons = world.polygons.iter().flat_map(|polygon| polygon.vertices.iter().copied());
-    let of_meshes = world.meshes.iter().flat_map(|mesh| mesh.vertices.iter().copied());
+    let polygons = (0..world.polygons.len() as u32).map(Origin::Polygon);
+    let triangles =
+        |(mesh, index): (&Mesh, u32)| (0..mesh.faces.len() as u32).map(move |face| Origin::Mesh(index, face));
+    let faces = polygons.chain(world.meshes.iter().zip(0..).flat_map(triangles));
+    let of_others = faces.filter(|face| !own.contains(face)).flat_map(|face| world.corners(face));
     let of_spheres = world.spheres.iter().map(|ball| ball.centre);
     let eyes = world.cameras.iter().map(|camera| camera.eye);
-    !of_polygons.chain(of_meshes).chain(of_spheres).chain(eyes).any(within)
+    !of_others.chain(of_spheres).chain(eyes).any(within)
 }
