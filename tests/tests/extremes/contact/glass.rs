@@ -14,9 +14,10 @@ fn pile(plates: &[(f64, f64)]) -> f64 {
     let mut below = 0.0;
     for (number, (index, passes)) in plates.iter().enumerate().rev() {
         let above = if number == 0 { 1.0 } else { plates[number - 1].0 };
-        let mirrored = ((index - above) / (index + above)).powi(2);
-        let beneath = passes * passes * below;
-        below = mirrored + (1.0 - mirrored).powi(2) * beneath / (1.0 - mirrored * beneath);
+        let amplitude = (index - above) / (index + above);
+        let mirrored = amplitude * amplitude;
+        let (passed, beneath) = (1.0 - mirrored, passes * passes * below);
+        below = mirrored + passed * passed * beneath / (1.0 - mirrored * beneath);
     }
     below
 }

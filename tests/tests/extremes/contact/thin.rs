@@ -49,7 +49,7 @@ fn a_thin_pane_is_left_again() {
 /// What a pane of this transmittance lets through and mirrors, for perpendicular light from both sides.
 fn slab(passes: f64) -> f64 {
     let r = MIRRORED;
-    let through = (1.0 - r).powi(2) * passes / (1.0 - (r * passes).powi(2));
+    let through = (1.0 - r) * (1.0 - r) * passes / (1.0 - r * passes * r * passes);
     let mirrored = r + r * passes * through;
     through + mirrored
 }
