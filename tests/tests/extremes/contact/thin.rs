@@ -125,6 +125,29 @@ fn a_gap_under_glass_is_a_gap_or_noted() {
     }
 }
 
+/// Coordinates as a file of f32 has them, a hundred times the scene's size away: glass that was meant to stand on a table
+/// stands above it, touches it, or crosses it, which is noted.
+#[test]
+fn contact_that_was_rounded_away_is_noted() {
+    let round = |point: DVec3| point.as_vec3().as_dvec3();
+    for k in 0..10 {
+        for (table, glass) in [(KINDS[1], KINDS[1]), (KINDS[0], KINDS[1])] {
+            for away in [0.0, 100.0, 1000.0] {
+                let mut world = under_a_sky();
+                let (clear, black) = (material(&mut world, Material::clear(1.5)), material(&mut world, grey(0.0)));
+                put(&mut world, square(4.0, 0.0), table, black);
+                put(&mut world, faces_of_box(at(-3.0, -3.0, 0.0), at(3.0, 3.0, 0.5)), glass, clear);
+                camera(&mut world, at(0.1, 0.2, 9.0), at(0.1, 0.2, 0.0), 0.02);
+                let mut world = elsewhere(&world, k).placed(1.0, |point| point + away * at(0.7, -0.4, 0.9));
+                world.meshes.iter_mut().flat_map(|mesh| &mut mesh.vertices).for_each(|corner| *corner = round(*corner));
+                let mean = render(&world, &by_paths(64)).mean[0];
+                let is_right = mean > 0.9 * MIRRORED && mean < 2.1 * MIRRORED;
+                assert!(is_noted(&world) || is_right, "{glass:?} on {table:?}, place {k}, {away} away: {mean}");
+            }
+        }
+    }
+}
+
 /// From 9 m a ray cannot tell which side of a pane of 10 nm it meets first, however fine coordinates are where that lies.
 #[test]
 fn a_pane_too_thin_to_be_seen_from_where_the_camera_is_is_noted() {

@@ -72,6 +72,12 @@ fn pair(world: &World, frame: &Frame, a: &Candidate, b: &Candidate) -> Option<Pa
     let most = low.abs().max(high.abs());
     let even = low * high > 0.0 && most <= 2.0 * low.abs().min(high.abs());
     let inclined = !even && most <= CROSSING * step.max(as_f32) && most <= NEAR * STEP;
+    // Rounded too coarsely for one plane: rays may get between the two wherever they cross.
+    let crossing = !even && !inclined && most <= CROSSING * as_f32 && (a.clear || b.clear);
+    if crossing {
+        let gap = most.max(2.0 * as_f32);
+        return Some(Pair { of: [a.origin, b.origin], gap, step: as_f32, same_way });
+    }
     let coincide = inclined || most <= ONE_PLACE * step + ROUNDING;
     let near = even && most <= NEAR * STEP * size && (a.clear || b.clear);
     let gap = if inclined { 0.0 } else { (low + high) / 2.0 };

@@ -6,6 +6,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use crate::accel::cones::leader;
+use crate::scene::contact::STEP;
 use crate::scene::world::World;
 use crate::scene::{Frame, Origin};
 
@@ -14,6 +15,9 @@ const MOST_SPLIT: usize = 2000;
 
 /// A corner this near to an edge, as part of the frame, lies on it.
 const ON_EDGE: f64 = 1e-6;
+
+/// Corners that are nearer than this along every axis, as part of the frame, are one.
+const ONE_CORNER: f64 = 4.0 * STEP;
 
 /// A surface that hangs together.
 #[derive(Clone, Debug, Default)]
@@ -52,21 +56,44 @@ pub fn bodies(world: &World, frame: &Frame, wanted: impl Fn(usize, bool) -> bool
     bodies.into_iter().map(|faces| body(&corners.points, &faces)).collect()
 }
 
-/// Corners by place: those that are one in the frame's f32 are one.
+/// Corners by place: those that are as near to each other as files round them are one. What was closed stays closed by
+/// that, however thin it is.
 #[derive(Default)]
 struct Corners {
-    ids: HashMap<[u32; 3], u32>,
+    /// Numbers of the corners in each cell of a grid.
+    cells: HashMap<[i32; 3], Vec<u32>>,
     points: Vec<DVec3>,
 }
 
 impl Corners {
     fn id(&mut self, point: DVec3) -> u32 {
-        let key = point.as_vec3().to_array().map(|x| (x + 0.0).to_bits());
-        *self.ids.entry(key).or_insert_with(|| {
+        self.known(point).unwrap_or_else(|| {
+            let id = self.points.len() as u32;
             self.points.push(point);
-            self.points.len() as u32 - 1
+            self.cells.entry(cell(point)).or_default().push(id);
+            id
         })
     }
+
+    fn known(&self, point: DVec3) -> Option<u32> {
+        let (low, high) = (cell(point - ONE_CORNER), cell(point + ONE_CORNER));
+        let is_here = |id: &u32| (self.points[*id as usize] - point).abs().max_element() <= ONE_CORNER;
+        for x in low[0]..=high[0] {
+            for y in low[1]..=high[1] {
+                for z in low[2]..=high[2] {
+                    let here = self.cells.get(&[x, y, z]).and_then(|ids| ids.iter().copied().find(is_here));
+                    if here.is_some() {
+                        return here;
+                    }
+                }
+            }
+        }
+        None
+    }
+}
+
+fn cell(point: DVec3) -> [i32; 3] {
+    (point / (8.0 * ONE_CORNER)).floor().to_array().map(|x| x as i32)
 }
 
 /// A face and the numbers of its corners.
