@@ -4,10 +4,11 @@
 use std::collections::HashSet;
 
 use glam::DVec3;
-use smalti_core::scene::{Origin, World, compile, newell};
+use smalti_core::scene::double::{Ray, nearest};
+use smalti_core::scene::soundness::{Finding as Unsound, Names, examine};
+use smalti_core::scene::{Frame, Origin, World, compile, contact, newell};
 
 use crate::Patient;
-use crate::double::{Ray, nearest};
 use crate::finding::{Finding, Verdict, counted};
 use crate::turned::size;
 
@@ -23,8 +24,9 @@ const FAR: f64 = 1e4;
 /// Rounding of coordinates in the frame, by the scene's size.
 const STEP: f64 = 1.0 / (1 << 24) as f64;
 
-/// Gaps of fewer steps may close: rays leave a surface by 24 steps of the frame, in which the scene is 1 to 2 wide.
-const STEPS: f64 = 15.0;
+/// Gaps of fewer steps may close: points on spheres are known to some 6 steps of the frame, in which the scene is 1 to 2
+/// wide.
+const STEPS: f64 = 7.5;
 
 /// Things that are named one by one.
 const NAMED: usize = 3;
@@ -45,6 +47,7 @@ pub fn check(patient: &Patient<'_>, tell: &mut impl FnMut(Finding)) {
     listed("twice", twice(&surfaces), "there twice, so that the first one counts", &mut warn);
     listed("small", small(patient.world, &surfaces), "less than 1e-5 of the scene", &mut warn);
     listed("gaps", gaps(patient.world), "so near another that rounding may join them", &mut warn);
+    unsound(patient.world, &mut warn);
     coordinates(patient.world, &mut warn);
     cameras(patient.world, &mut warn);
 }
@@ -138,6 +141,45 @@ fn gaps(world: &World) -> Vec<String> {
         }
     }
     near
+}
+
+/// The names of a world, which has none.
+struct Numbered;
+
+impl Names for Numbered {
+    fn surface(&self, surface: Origin) -> String {
+        surface.to_string()
+    }
+
+    fn material(&self, material: usize) -> String {
+        format!("material {material}")
+    }
+}
+
+/// Dielectrics and lamps that are hardly meant as they are wound, and what is too thin or too small for coordinates.
+fn unsound(world: &World, warn: &mut impl FnMut(&'static str, f64, Result<String, String>)) {
+    let frame = Frame::of(world);
+    let found = examine(world, &frame, &contact::pairs(world, &frame));
+    for (case, none) in [
+        ("open", "every dielectric is closed"),
+        ("turned round", "every dielectric and lamp shows its outside"),
+        ("thin", "no dielectric is as thin as coordinates are rounded"),
+        ("coarse", "everything has coordinates enough where it lies"),
+    ] {
+        let says: Vec<String> =
+            found.iter().filter(|finding| case_of(finding) == case).map(|finding| finding.says(&Numbered)).collect();
+        let count = says.len();
+        warn(case, count as f64, if count == 0 { Ok(none.to_owned()) } else { Err(says.join("; ")) });
+    }
+}
+
+fn case_of(finding: &Unsound) -> &'static str {
+    match finding {
+        Unsound::Open { .. } => "open",
+        Unsound::InsideOut { .. } | Unsound::ShinesInwards { .. } => "turned round",
+        Unsound::Thin { .. } => "thin",
+        Unsound::Coarse { .. } | Unsound::Rough { .. } => "coarse",
+    }
 }
 
 /// How coarse f64 is where the scene lies.

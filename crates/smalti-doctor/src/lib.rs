@@ -4,7 +4,6 @@
 //! [`examine`] runs every check and tells each finding as soon as it is there. Nothing here is about one scene: what the
 //! checks ask for are the renderer's promises (docs/stability.md).
 
-mod double;
 mod finding;
 mod geometry;
 mod photons;

@@ -4,10 +4,10 @@ use glam::DVec3;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use smalti_core::render::{Renderer, Vertex};
+use smalti_core::scene::double::{Hit, Ray, nearest};
 use smalti_core::scene::{Origin, World};
 use smalti_core::settings::{Integrator, Settings};
 
-use crate::double::{Hit, Ray, nearest};
 use crate::finding::{Finding, Verdict, counted};
 use crate::turned::{moved, size};
 use crate::{DoctorError, Patient};

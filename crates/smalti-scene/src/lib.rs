@@ -14,8 +14,10 @@ mod light;
 mod material;
 mod mesh;
 mod note;
+mod place;
 mod polygon;
 mod render_table;
+mod soundness;
 mod surface;
 mod world;
 
@@ -59,8 +61,7 @@ pub fn load_watched(path: &Path, watch: &Watch) -> Result<Loaded, SceneError> {
     let name = path.display().to_string();
     let text = file::text(path).map_err(|(fault, text)| SceneError::new(&name, text, fault))?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    match document::parse(&text).and_then(|document| world::read(&document, (folder, watch))) {
-        Ok((world, settings, notes)) => Ok(Loaded { scene_hash: hash::of(&world), world, settings, notes }),
-        Err(fault) => Err(SceneError::new(&name, text, fault)),
-    }
+    document::parse(&text)
+        .and_then(|document| world::read(&document, &text, (folder, watch)))
+        .map_err(|fault| SceneError::new(&name, text, fault))
 }

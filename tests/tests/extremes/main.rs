@@ -1,9 +1,12 @@
 //! Scenes at the edge of what can be described, and beyond: rendered right, or answered. docs/stability.md lists what each
 //! of them asks for, and what other renderers do.
 
+mod contact;
 mod counts;
+mod huge;
 mod places;
 mod shapes;
+mod unsound;
 mod values;
 
 use smalti_core::render::Level;

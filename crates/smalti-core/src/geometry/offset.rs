@@ -11,9 +11,20 @@ const ERROR: f32 = 24.0 / 16_777_216.0;
 /// coordinate that the point was made from.
 #[inline(always)]
 pub fn leave<L: Lanes>(l: L, point: V3<L>, scale: L::F, normal: V3<L>) -> V3<L> {
+    point.along(l, error(l, scale), normal)
+}
+
+/// The same, but no farther than `room`: something else is as near.
+#[inline(always)]
+pub fn leave_within<L: Lanes>(l: L, point: V3<L>, scale: L::F, room: L::F, normal: V3<L>) -> V3<L> {
+    point.along(l, l.min(error(l, scale), room), normal)
+}
+
+#[inline(always)]
+fn error<L: Lanes>(l: L, scale: L::F) -> L::F {
     let error = if mutant!("any_positive_distance") { 0.0 } else { ERROR };
     let scale = if mutant!("absolute_epsilon") { l.f(1e-4 / ERROR) } else { scale };
-    point.along(l, scale * l.f(error), normal)
+    scale * l.f(error)
 }
 
 /// A hit at distance `t` of a ray, moved onto the plane n·x = d that it hit.

@@ -1,7 +1,8 @@
 //! The plane of a face against a ray.
 
 use super::Ray;
-use crate::lanes::{Lanes, V3};
+use super::ray::edge;
+use crate::lanes::{Lanes, One, V3};
 use crate::mutant::mutant;
 
 /// Below this |cosine| (relative to the direction's largest component) a ray grazes and the distance is clamped to the
@@ -36,6 +37,20 @@ pub fn within<L: Lanes>(l: L, ray: &Ray<L>, normal: V3<L>, offset: L::F) -> (L::
     let (height, cosine, grazing) = approach(l, ray, normal, offset);
     let towards = l.reinterpret(l.bits(height) ^ (l.bits(cosine) & l.u(0x8000_0000)));
     (l.lt(l.f(0.0), towards) & l.lt(towards, l.abs(cosine)), grazing)
+}
+
+/// Whether the ray (as a line) passes on one side of all edges between these corners.
+pub fn passes(mut corners: impl Iterator<Item = [f32; 3]>, ray: &Ray<One>) -> bool {
+    let project = |corner: [f32; 3]| ray.project(One, V3::splat(One, corner));
+    let Some(first) = corners.next().map(project) else { return false };
+    let (mut left, mut right, mut from) = (true, true, first);
+    for to in corners.map(project).chain([first]) {
+        let side = edge(from, to);
+        left &= side >= 0.0;
+        right &= side <= 0.0;
+        from = to;
+    }
+    left != right
 }
 
 /// 1 / d with ±MAX in place of ±∞, so that 0 · ∞ cannot arise.

@@ -5,7 +5,7 @@ use crate::film::Pixel;
 use crate::light::table::Kind;
 use crate::photon::pass::Pass;
 use crate::photon::{self, SUB_MAPS};
-use crate::scene::{Class, Scene};
+use crate::scene::{Class, Joints, Room, Scene};
 use crate::settings::{Integrator, Settings};
 use crate::stream::dielectric::FORK;
 
@@ -33,7 +33,9 @@ fn counted(count: usize, name: &str) -> String {
 }
 
 fn accelerator(plan: &Plan, scene: &Scene) -> Decision {
-    let tables = (scene.shades.len() * 44 + scene.faces.len() * 28 + scene.vertices.len() * 12) as u64;
+    let tables = (scene.shades.len() * 44 + scene.faces.len() * 28 + scene.vertices.len() * 12) as u64
+        + scene.room.as_ref().map_or(0, Room::bytes)
+        + scene.joints.as_ref().map_or(0, Joints::bytes);
     let list = plan.everything.list.len();
     match &plan.everything.tree {
         None => {

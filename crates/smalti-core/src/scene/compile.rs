@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
+use super::contact::settle;
 use super::frame::Frame;
 use super::media::Media;
 use super::world::{Camera, Material, Rgb, World};
@@ -44,6 +45,7 @@ impl Compiler<'_> {
         }
         self.scene.lights.finish();
         self.scene.views = world.cameras.iter().map(|camera| view(&self.scene.frame, camera)).collect();
+        settle(&mut self.scene, world);
         self.scene.media = Media::of(world, &self.scene);
         self.scene
     }
@@ -201,6 +203,8 @@ impl Default for Scene {
             environment: None,
             views: Vec::new(),
             media: None,
+            room: None,
+            joints: None,
             dropped: 0,
         }
     }

@@ -75,6 +75,16 @@ impl Media {
         l.gather_u(&self.sides, l.select_u(lanes, l.add_u(l.shl::<1>(prim), side), l.u(0)))
     }
 
+    /// The medium inside of a dielectric primitive.
+    pub fn inside(&self, prim: u32) -> u32 {
+        self.sides[2 * prim as usize]
+    }
+
+    /// The medium that a dielectric primitive's body lies in.
+    pub fn outside(&self, prim: u32) -> u32 {
+        self.sides[2 * prim as usize + 1]
+    }
+
     /// Bytes that it takes.
     pub fn bytes(&self) -> u64 {
         let numbers = self.sides.len() + self.lights.len() + self.views.len();
@@ -122,13 +132,14 @@ impl Boundary {
             Some(face) => {
                 let corners = scene.face_corners(face).iter().map(|corner| wide(scene.vertices[*corner as usize]));
                 let middle = corners.sum::<DVec3>() / f64::from(face.count);
-                Start::off(middle, wide([face.plane[0], face.plane[1], face.plane[2]]), face.surface)
+                let start = Start::off(middle, wide([face.plane[0], face.plane[1], face.plane[2]]), face.surface);
+                Start { enters_what_touches: true, ..start }
             }
             None => {
                 let sphere = self.prim as usize - scene.faces.len();
                 let [x, y, z, radius] = scene.spheres[sphere];
                 let from = wide([x, y, z]) + f64::from(radius) * WAY.normalize();
-                Start::off(from, WAY, scene.planes + sphere as u32)
+                Start::off(from, WAY, scene.surface(self.prim))
             }
         }
     }
@@ -156,18 +167,25 @@ struct Start {
     way: DVec3,
     /// The surface that it leaves.
     leaves: u32,
+    /// Whether it goes into what touches that surface, and is then not around it.
+    enters_what_touches: bool,
 }
 
 impl Start {
     /// On a surface, to the side of its normal.
     fn off(from: DVec3, normal: DVec3, leaves: u32) -> Self {
         let way = if WAY.dot(normal) < 0.0 { -WAY } else { WAY };
-        Self { from, way, leaves }
+        Self { from, way, leaves, enters_what_touches: false }
+    }
+
+    /// Anywhere.
+    fn at(from: DVec3) -> Self {
+        Self { from, way: WAY, leaves: NO_SURFACE, enters_what_touches: false }
     }
 
     /// Before `eye`: what is on a surface is on the side to which it looks.
     fn in_air(eye: [f32; 3], forward: [f32; 3]) -> Self {
-        Self { from: wide(eye) + wide(forward) / f64::from(1u32 << 20), way: WAY, leaves: NO_SURFACE }
+        Self::at(wide(eye) + wide(forward) / f64::from(1u32 << 20))
     }
 }
 
@@ -178,9 +196,9 @@ fn light(scene: &Scene, row: usize) -> Start {
     let corner = wide([x, y, z]);
     match scene.lights.kinds[row] {
         kind if kind == Kind::Sphere as u32 => Start::off(corner + f64::from(radius) * WAY.normalize(), WAY, surface),
-        kind if kind == Kind::Point as u32 => Start { from: corner, way: WAY, leaves: NO_SURFACE },
+        kind if kind == Kind::Point as u32 => Start::at(corner),
         // The sky is around everything.
-        kind if kind == Kind::Sky as u32 => Start { from: DVec3::splat(8.0), way: WAY, leaves: NO_SURFACE },
+        kind if kind == Kind::Sky as u32 => Start::at(DVec3::splat(8.0)),
         _ => {
             let [_, _, _, a, b, c, d, e, f, nx, ny, nz, ..] = scene.lights.rows[row];
             Start::off(corner + (wide([a, b, c]) + wide([d, e, f])) / 3.0, wide([nx, ny, nz]), surface)
@@ -225,8 +243,10 @@ impl Nested<'_> {
         let [x, y, z, distance] = face.plane;
         let normal = wide([x, y, z]);
         let slope = normal.dot(start.way);
-        let t = (f64::from(distance) - normal.dot(start.from)) / slope;
-        if slope == 0.0 || t <= 0.0 || face.surface == start.leaves {
+        let own = face.surface == start.leaves;
+        let t = if own { 0.0 } else { (f64::from(distance) - normal.dot(start.from)) / slope };
+        let enters = own && start.enters_what_touches && slope < 0.0;
+        if slope == 0.0 || (t <= 0.0 && !enters) {
             return;
         }
         let point = start.from + t * start.way;
@@ -240,7 +260,7 @@ impl Nested<'_> {
 
     fn meet_sphere(&self, sphere: usize, start: &Start, tell: &mut impl FnMut(f64, bool)) {
         let [x, y, z, radius] = self.scene.spheres[sphere];
-        if self.scene.planes + sphere as u32 == start.leaves {
+        if self.scene.surface((self.scene.faces.len() + sphere) as u32) == start.leaves {
             return;
         }
         let way = start.way.normalize();

@@ -2,15 +2,20 @@
 //!
 //! In a scene everything is an index into a flat table. Primitives are numbered through: faces (planar convex polygons;
 //! those that emit first, then the others; of each the polygons, then the mesh triangles), then spheres. Ties between hits
-//! at the same distance go to the lower number.
+//! at the same distance go to the lower number; where faces coincide they are numbered anew, so that it is the right one
+//! ([`contact`]).
 
 mod compile;
+pub mod contact;
 pub mod details;
+pub mod double;
 pub mod frame;
 pub mod media;
+pub mod soundness;
 pub mod world;
 
 pub use compile::{compile, newell};
+pub use contact::{Joints, Room};
 pub use frame::Frame;
 pub use media::Media;
 pub use world::World;
@@ -45,6 +50,10 @@ pub struct Scene {
     pub views: Vec<View>,
     /// What rays travel in, where some of it absorbs.
     pub media: Option<Media>,
+    /// How far rays may start off primitives, where some nearly touch.
+    pub room: Option<Room>,
+    /// Dielectrics in one place, where some are.
+    pub joints: Option<Joints>,
     /// Primitives without area that were left out.
     pub dropped: usize,
 }
@@ -91,8 +100,8 @@ impl Class {
     }
 }
 
-/// Where a primitive comes from, for messages.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Where a primitive comes from, for messages; in the order of the world's lists.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Origin {
     /// Index into the world's polygons.
     Polygon(u32),
@@ -121,6 +130,11 @@ impl Scene {
     /// Corners of a face.
     pub fn face_corners(&self, face: &Face) -> &[u32] {
         &self.corners[face.first as usize..(face.first + face.count) as usize]
+    }
+
+    /// The surface id of a primitive.
+    pub fn surface(&self, prim: u32) -> u32 {
+        self.shades[prim as usize][7].to_bits()
     }
 
     /// The class of a primitive; `None` for no primitive.

@@ -5,6 +5,8 @@
 
 use glam::DVec3;
 
+use super::Origin;
+
 /// A linear RGB triple in f64: an albedo, a radiance (W m⁻² sr⁻¹) or an intensity (W sr⁻¹).
 pub type Rgb = [f64; 3];
 
@@ -25,9 +27,57 @@ pub struct World {
     pub environment: Option<Rgb>,
     /// At least one camera.
     pub cameras: Vec<Camera>,
+    /// In which order the surfaces were written.
+    pub order: Order,
+}
+
+/// In which order surfaces were written: of those in one place the first is seen. Each list has a place for each item of
+/// the world's list of that name, or is empty: then polygons come before meshes, and both as they are listed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Order {
+    /// Places of the polygons.
+    pub polygons: Vec<usize>,
+    /// Places of the meshes.
+    pub meshes: Vec<usize>,
 }
 
 impl World {
+    /// Where a surface stands among all: lower is earlier. Of one mesh the triangles are as they are listed.
+    pub fn place(&self, surface: Origin) -> (usize, u32) {
+        match surface {
+            Origin::Polygon(index) => (*self.order.polygons.get(index as usize).unwrap_or(&(index as usize)), 0),
+            Origin::Mesh(index, triangle) => {
+                let default = self.polygons.len() + index as usize;
+                (*self.order.meshes.get(index as usize).unwrap_or(&default), triangle)
+            }
+            Origin::Sphere(index) => (index as usize, 0),
+        }
+    }
+
+    /// Corners of a face, metres; none for a sphere.
+    pub fn corners(&self, face: Origin) -> Vec<DVec3> {
+        match face {
+            Origin::Polygon(index) => self.polygons[index as usize].vertices.clone(),
+            Origin::Mesh(index, triangle) => {
+                let mesh = &self.meshes[index as usize];
+                mesh.faces[triangle as usize].map(|corner| mesh.vertices[corner as usize]).to_vec()
+            }
+            Origin::Sphere(_) => Vec::new(),
+        }
+    }
+
+    /// Index of the material that a surface is of, and its radiance.
+    pub fn skin(&self, surface: Origin) -> (usize, Option<Rgb>) {
+        match surface {
+            Origin::Polygon(index) => {
+                let polygon = &self.polygons[index as usize];
+                (polygon.material, polygon.radiance)
+            }
+            Origin::Mesh(index, _) => (self.meshes[index as usize].material, self.meshes[index as usize].radiance),
+            Origin::Sphere(index) => (self.spheres[index as usize].material, self.spheres[index as usize].radiance),
+        }
+    }
+
     /// Low and high corner of all geometry and of the lights without extent; `None` if there is nothing.
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
         let polygons = self.polygons.iter().flat_map(|polygon| polygon.vertices.iter().copied());
@@ -104,6 +154,11 @@ impl Material {
     /// Whether light that goes through it gets less.
     pub fn absorbs(&self) -> bool {
         matches!(self, Self::Dielectric { absorption, .. } if *absorption != [0.0; 3])
+    }
+
+    /// Whether it bounds a medium.
+    pub fn is_dielectric(&self) -> bool {
+        matches!(self, Self::Dielectric { .. })
     }
 
     /// Whether it sends all light one or two ways, and so casts caustics.

@@ -1,6 +1,7 @@
 //! A smooth dielectric boundary: reflected or refracted by chance ([`run`], photons, and where no light can be hit), or
 //! both as a tree ([`split`], whitted), or both where both matter and else by chance ([`fork`], paths).
 
+use super::joined::{Joined, joined};
 use super::{DIRECTION, PRIM, Scattered, Stream, THROUGHPUT, mirror, surface};
 use crate::bsdf::fresnel::{Boundary, boundary, reflectance};
 use crate::lanes::{Lanes, V3};
@@ -101,12 +102,17 @@ impl<L: Lanes> Crossing<L> {
         let hit = surface::hit(l, scene, hits, at);
         let side = V3::select(l, hit.outside, hit.normal, -hit.normal);
         let cosine = -side.dot(l, hits.v3(l, DIRECTION, at));
-        let boundary = boundary(l, [hit.colour.x, hit.colour.y, hit.colour.z], hit.outside, cosine);
-        let reflectance = reflectance(l, fresnel, &boundary);
         let beyond = match &scene.media {
             Some(media) => media.beyond(l, hits.u(l, PRIM, at), hit.outside, hits.active(l, at)),
             None => l.u(0),
         };
+        let mut here = Joined { index: hit.colour, beyond };
+        if let Some(joints) = &scene.joints {
+            here = joined(l, (scene, joints), (hits, at), hit.outside, here);
+        }
+        let Joined { index: V3 { x, y, z }, beyond } = here;
+        let boundary = boundary(l, [x, y, z], hit.outside, cosine);
+        let reflectance = reflectance(l, fresnel, &boundary);
         Self { hit, side, boundary, reflectance, beyond }
     }
 

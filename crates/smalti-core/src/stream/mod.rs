@@ -14,6 +14,7 @@ pub mod environment;
 pub mod gather;
 pub mod generate;
 pub mod intersect;
+pub mod joined;
 pub mod mirror;
 pub mod roulette;
 pub mod slots;

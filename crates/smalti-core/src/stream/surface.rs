@@ -4,6 +4,7 @@
 use super::{DIRECTION, DISTANCE, LEAVES, ORIGIN, PRIM, Stream, THROUGHPUT};
 use crate::geometry::offset;
 use crate::lanes::{Lanes, V3};
+use crate::mutant::mutant;
 use crate::scene::Scene;
 
 /// A hit as shading sees it.
@@ -20,13 +21,18 @@ pub struct Hit<L: Lanes> {
     pub surface: L::U,
     /// Largest coordinate that the point was made from: its error is relative to this.
     scale: L::F,
+    /// How far rays may start off it, to the side of the normal and to the other, where something is near.
+    room: Option<[L::F; 2]>,
 }
 
 impl<L: Lanes> Hit<L> {
     /// Where rays start that leave to the side of `side`, the normal or its opposite.
     #[inline(always)]
     pub fn leave(&self, l: L, side: V3<L>) -> V3<L> {
-        offset::leave(l, self.point, self.scale, side)
+        let room = self.room.filter(|_| !mutant!("thin_panes_jumped_over"));
+        let Some([outside, inside]) = room else { return offset::leave(l, self.point, self.scale, side) };
+        let room = l.select(l.lt(l.f(0.0), side.dot(l, self.normal)), outside, inside);
+        offset::leave_within(l, self.point, self.scale, room, side)
     }
 }
 
@@ -60,7 +66,11 @@ fn of<L: Lanes>(l: L, scene: &Scene, hits: &Stream, at: usize, prim: L::U) -> Hi
         scale = l.select(is_sphere, geometry.max_abs(l) + w, scale);
     }
     let outside = l.lt(normal.dot(l, direction), l.f(0.0));
-    Hit { point: on_surface, normal, outside, colour: V3::new(r, g, b), surface, scale }
+    let room = scene.room.as_ref().map(
+        #[inline(always)]
+        |room| [l.gather(&room.outside, prim), l.gather(&room.inside, prim)],
+    );
+    Hit { point: on_surface, normal, outside, colour: V3::new(r, g, b), surface, scale, room }
 }
 
 /// The places on the surfaces of `prim` that lie beneath `point`, where rays leave them.

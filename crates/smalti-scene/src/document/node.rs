@@ -29,6 +29,11 @@ impl<'d> Node<'d> {
         self.value.span()
     }
 
+    /// The value of `name` in this table, if it is there.
+    pub fn entry(self, name: &'d str) -> Option<Node<'d>> {
+        self.value().as_table()?.get(name).map(|value| Node::new(name, value))
+    }
+
     /// The value.
     pub fn value(self) -> &'d DeValue<'d> {
         self.value.get_ref()

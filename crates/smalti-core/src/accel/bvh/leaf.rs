@@ -152,7 +152,7 @@ impl Single {
             }
             Shape::Polygon { .. } if leaves_it => f32::INFINITY,
             Shape::Polygon { corners, plane: [nx, ny, nz, offset], low, high } => {
-                if !inside(corners, ray) {
+                if !polygon::passes(corners.iter().copied(), ray) {
                     return f32::INFINITY;
                 }
                 let plane = (V3::new(*nx, *ny, *nz), *offset);
@@ -169,19 +169,4 @@ impl Single {
 
 fn inverse_square(ray: &Ray<One>) -> f32 {
     1.0 / ray.direction.dot(One, ray.direction)
-}
-
-/// Whether the ray (as a line) passes on one side of all edges.
-fn inside(corners: &[[f32; 3]], ray: &Ray<One>) -> bool {
-    let project = |corner: &[f32; 3]| ray.project(One, V3::splat(One, *corner));
-    let (mut left, mut right) = (true, true);
-    let mut from = project(&corners[corners.len() - 1]);
-    for corner in corners {
-        let to = project(corner);
-        let side = ray::edge(from, to);
-        left &= side >= 0.0;
-        right &= side <= 0.0;
-        from = to;
-    }
-    left != right
 }

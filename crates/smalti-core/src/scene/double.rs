@@ -1,7 +1,8 @@
 //! What a ray hits, in f64 and on the scene as it was written: every primitive tested, no frame, no tree, no lanes.
 
 use glam::DVec3;
-use smalti_core::scene::{Origin, World, newell};
+
+use super::{Origin, World, newell};
 
 /// A ray in the user's units.
 #[derive(Clone, Copy, Debug)]
@@ -21,6 +22,8 @@ pub struct Hit {
     pub distance: f64,
     /// The cosine between ray and normal, at least 0.
     pub cosine: f64,
+    /// Whether the ray comes from the side of the normal.
+    pub outside: bool,
 }
 
 /// The nearest hit farther away than `from`; the first of equals.
@@ -60,7 +63,7 @@ fn face(corners: &[DVec3], ray: &Ray, from: f64, origin: Origin) -> Option<Hit> 
     let point = ray.origin + distance * ray.direction;
     let next = corners.iter().cycle().skip(1);
     let is_left = |(a, b): (&DVec3, &DVec3)| (*b - *a).cross(point - *a).dot(normal) >= 0.0;
-    corners.iter().zip(next).all(is_left).then_some(Hit { origin, distance, cosine: slope.abs() })
+    corners.iter().zip(next).all(is_left).then_some(Hit { origin, distance, cosine: slope.abs(), outside: slope < 0.0 })
 }
 
 fn sphere(centre: DVec3, radius: f64, ray: &Ray, from: f64, origin: Origin) -> Option<Hit> {
@@ -72,14 +75,13 @@ fn sphere(centre: DVec3, radius: f64, ray: &Ray, from: f64, origin: Origin) -> O
         return None;
     }
     let distance = [middle - half, middle + half].into_iter().find(|distance| *distance > from)?;
-    Some(Hit { origin, distance, cosine: half / radius })
+    Some(Hit { origin, distance, cosine: half / radius, outside: distance < middle })
 }
 
 #[cfg(test)]
 mod tests {
-    use smalti_core::scene::world::{Polygon, Sphere};
-
     use super::*;
+    use crate::scene::world::{Polygon, Sphere};
 
     #[test]
     fn known_hits() {
