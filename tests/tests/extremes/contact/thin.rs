@@ -125,14 +125,14 @@ fn a_gap_under_glass_is_a_gap_or_noted() {
     }
 }
 
-/// Coordinates as a file of f32 has them, a hundred times the scene's size away: glass that was meant to stand on a table
-/// stands above it, touches it, or crosses it, which is noted.
+/// Coordinates as a file of f32 has them, up to thirty times the size of the scene away: glass that was meant to stand on
+/// a table stands above it, touches it, or crosses it, which is noted.
 #[test]
 fn contact_that_was_rounded_away_is_noted() {
     let round = |point: DVec3| point.as_vec3().as_dvec3();
     for k in 0..10 {
         for (table, glass) in [(KINDS[1], KINDS[1]), (KINDS[0], KINDS[1])] {
-            for away in [0.0, 100.0, 1000.0] {
+            for away in [0.0, 30.0, 100.0, 300.0] {
                 let mut world = under_a_sky();
                 let (clear, black) = (material(&mut world, Material::clear(1.5)), material(&mut world, grey(0.0)));
                 put(&mut world, square(4.0, 0.0), table, black);
