@@ -14,8 +14,8 @@ use crate::crosscheck::CrosscheckStatement;
 use crate::interval::Z;
 
 /// The upper end allows for this much more: of what is much smaller than a photon's disc, half of the disc has more than
-/// half of the bias. Of the random rooms whose error is
-/// bias for the most part, 1.3 holds 95 % of the renders (`rooms`, column `needed` times this).
+/// half of the bias. Of the random rooms whose error is bias for the most part, 1.3 holds 95 % of the renders (`rooms`,
+/// column `needed` times this).
 const UNRESOLVED: f64 = 1.5;
 
 /// The bias by photon radii. The names of the fields are a promise: summaries carry them.
