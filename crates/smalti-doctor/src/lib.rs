@@ -18,6 +18,8 @@ use smalti_core::render::{Level, PlanError};
 use smalti_core::scene::World;
 use smalti_core::settings::Settings;
 
+use crate::pictures::Studio;
+
 /// Why an examination ended early.
 #[derive(Debug, thiserror::Error)]
 pub enum DoctorError {
@@ -46,7 +48,9 @@ pub struct Patient<'a> {
 /// Settings that the scene cannot meet, or a worker that panicked.
 pub fn examine(patient: Patient<'_>, pool: &ThreadPool, mut tell: impl FnMut(Finding)) -> Result<(), DoctorError> {
     geometry::check(&patient, &mut tell);
-    pictures::check(&patient, pool, &mut tell)?;
-    photons::check(&patient, pool, &mut tell)?;
+    let studio = Studio { pool, level: patient.level };
+    let films = studio.films(patient.world, patient.settings)?;
+    pictures::check(&patient, (&studio, &films), &mut tell)?;
+    photons::check(&patient, (&studio, &films), &mut tell)?;
     rays::check(&patient, pool, &mut tell)
 }

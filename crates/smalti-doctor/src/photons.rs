@@ -3,32 +3,31 @@
 //! With `auto` all other light is that of `path`, sample by sample: that paths find of the caustic map's light what photons
 //! bring says that the two integrators agree. With `photon` the light of final gathers stands beside that of `auto`.
 
-use rayon::ThreadPool;
+use smalti_core::film::Film;
 use smalti_core::settings::{Integrator, Settings};
-use smalti_measure::{CrosscheckStatement, bias_statement};
+use smalti_measure::{CrosscheckStatement, FEWEST_FINDS, bias_statement};
 
 use crate::finding::{Finding, Verdict};
-use crate::pictures::{ALLOWED, LIMIT, SEEDS, Studio, same_light};
+use crate::pictures::{ALLOWED, LIMIT, Studio, means, moments, same_light};
 use crate::{DoctorError, Patient};
 
 /// What photons may lack of the picture's light: their discs reach beyond edges.
 const LACKING: f64 = 0.005;
 
-/// Compares, where photons are asked.
-pub fn check(patient: &Patient<'_>, pool: &ThreadPool, tell: &mut impl FnMut(Finding)) -> Result<(), DoctorError> {
-    let Patient { world, settings, level } = *patient;
-    let studio = Studio { pool, level };
-    let mut checks = Vec::new();
-    for seed in 0..SEEDS {
-        let settings = Settings { seed: settings.seed.wrapping_add(seed), ..settings.clone() };
-        let Some(bias) = bias_statement(&studio.render(world, &settings)?.film) else { return Ok(()) };
-        checks.extend(bias.crosscheck);
-    }
+/// Compares by the films of the scene's seeds, where photons are asked.
+pub fn check(
+    patient: &Patient<'_>,
+    (studio, films): (&Studio<'_>, &[Film]),
+    tell: &mut impl FnMut(Finding),
+) -> Result<(), DoctorError> {
+    let Patient { world, settings, .. } = *patient;
+    let Some(biases) = films.iter().map(bias_statement).collect::<Option<Vec<_>>>() else { return Ok(()) };
+    let checks: Vec<CrosscheckStatement> = biases.iter().filter_map(|bias| bias.crosscheck).collect();
     tell(caustics(&checks));
     if settings.integrator == Integrator::Photon {
         let auto = Settings { integrator: Integrator::Auto, ..settings.clone() };
-        let means = (&studio.means(world, &auto)?, &studio.means(world, settings)?);
-        tell(same_light(("photons", "beside auto"), (means.0, means.1), ALLOWED + LACKING));
+        let auto = means(&studio.films(world, &auto)?);
+        tell(same_light(("photons", "beside auto"), (&auto, &means(films)), ALLOWED + LACKING));
     }
     Ok(())
 }
@@ -36,16 +35,13 @@ pub fn check(patient: &Patient<'_>, pool: &ThreadPool, tell: &mut impl FnMut(Fin
 /// Whether photons bring the light that paths find. Paths that find less prove nothing: they meet small lamps seldom.
 fn caustics(checks: &[CrosscheckStatement]) -> Finding {
     let what = ("photons", "beside paths");
-    let count = checks.len() as f64;
-    if checks.len() < 2 || checks.iter().map(|check| check.finds).sum::<f64>() < 16.0 {
+    if checks.len() < 2 || checks.iter().map(|check| check.finds).sum::<f64>() < FEWEST_FINDS {
         let says = "paths meet too little of the light that photons bring: not compared";
         return Finding::new(what, (true, Verdict::Warning), None, says);
     }
-    let mean = |of: fn(&CrosscheckStatement) -> f64| checks.iter().map(of).sum::<f64>() / count;
-    let [photons, paths] = [mean(|check| check.by_photons), mean(|check| check.by_paths)];
-    let off = |check: &CrosscheckStatement| check.by_paths - check.by_photons - (paths - photons);
-    let error = (checks.iter().map(|check| off(check) * off(check)).sum::<f64>() / (count * (count - 1.0))).sqrt();
-    let lacks = paths - photons;
+    let of = |value: fn(&CrosscheckStatement) -> f64| moments(&checks.iter().map(value).collect::<Vec<f64>>());
+    let ((photons, _), (paths, _)) = (of(|check| check.by_photons), of(|check| check.by_paths));
+    let (lacks, error) = of(|check| check.by_paths - check.by_photons);
     let is_sound = lacks <= LACKING || lacks <= LIMIT * error;
     let [brought, found, noise] = [photons, paths, error].map(|share| 100.0 * share);
     let says = format!("photons bring {brought:.3} % of the light, paths find {found:.3} % ± {noise:.3} % of it again");
@@ -55,6 +51,7 @@ fn caustics(checks: &[CrosscheckStatement]) -> Finding {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pictures::SEEDS;
 
     fn check(by_photons: f64, by_paths: f64) -> CrosscheckStatement {
         CrosscheckStatement { by_photons, by_paths, interval: None, finds: 30.0, lacking: 0.0, lacking_high: 0.0 }

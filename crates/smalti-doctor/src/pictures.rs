@@ -36,10 +36,13 @@ pub const ALLOWED: f64 = 1e-4;
 /// Side of the square tiles of a film.
 const TILE: u32 = 32;
 
-/// Renders every variant and compares.
-pub fn check(patient: &Patient<'_>, pool: &ThreadPool, tell: &mut impl FnMut(Finding)) -> Result<(), DoctorError> {
-    let Patient { world, settings, level } = *patient;
-    let studio = Studio { pool, level };
+/// Renders every variant and compares; `films` are those of the scene as it is.
+pub fn check(
+    patient: &Patient<'_>,
+    (studio, films): (&Studio<'_>, &[Film]),
+    tell: &mut impl FnMut(Finding),
+) -> Result<(), DoctorError> {
+    let Patient { world, settings, .. } = *patient;
     let base = studio.render(world, settings)?;
     samples(&base, tell);
     let image = base.film.develop();
@@ -48,25 +51,25 @@ pub fn check(patient: &Patient<'_>, pool: &ThreadPool, tell: &mut impl FnMut(Fin
         tell(same_bits(("scale", format!("2^{k}")), &image, &studio.draw(&world, &settings)?));
     }
     for other in Level::available() {
-        let drawn = Studio { level: other, ..studio }.draw(world, settings)?;
+        let drawn = Studio { level: other, ..*studio }.draw(world, settings)?;
         tell(same_bits(("simd", other.name()), &image, &drawn));
     }
-    let means = studio.means(world, settings)?;
+    let as_it_is = means(films);
     for k in DECADES {
         let (world, settings) = scaled(world, settings, power_of_ten(k));
-        tell(same_light(("scale", format!("10^{k}")), (&means, &studio.means(&world, &settings)?), ALLOWED));
+        tell(same_light(("scale", format!("10^{k}")), (&as_it_is, &means(&studio.films(&world, &settings)?)), ALLOWED));
     }
     // Along no axis and no edge.
     let way = DVec3::new(0.48, -0.6, 0.64);
     for k in AWAY {
         let far = moved(world, way * size(world) * power_of_ten(k));
-        let found = studio.means(&far, settings)?;
-        tell(same_light(("moved", format!("10^{k} sizes")), (&means, &found), ALLOWED + coarseness(&far)));
+        let found = means(&studio.films(&far, settings)?);
+        tell(same_light(("moved", format!("10^{k} sizes")), (&as_it_is, &found), ALLOWED + coarseness(&far)));
     }
     for (axis, angle) in [(DVec3::Z, 0.5), (DVec3::new(0.6, 0.0, 0.8), 2.0), (way, 1.0)] {
         let turned = turned(world, DQuat::from_axis_angle(axis.normalize(), angle));
         let case = format!("{:.0}° about ({}, {}, {})", angle * 180.0 / PI, axis.x, axis.y, axis.z);
-        tell(same_light(("turned", case), (&means, &studio.means(&turned, settings)?), ALLOWED));
+        tell(same_light(("turned", case), (&as_it_is, &means(&studio.films(&turned, settings)?)), ALLOWED));
     }
     Ok(())
 }
@@ -93,15 +96,32 @@ impl Studio<'_> {
         Ok(self.render(world, settings)?.film.develop())
     }
 
-    /// The mean of the picture with each seed.
-    pub fn means(&self, world: &World, settings: &Settings) -> Result<Vec<f64>, DoctorError> {
-        let mean = |seed: u64| {
-            let image = self.draw(world, &Settings { seed: settings.seed.wrapping_add(seed), ..settings.clone() })?;
-            let sum: f64 = image.pixels.as_flattened().iter().map(|value| f64::from(*value)).sum();
-            Ok(sum / (3 * image.pixels.len()) as f64)
+    /// The films with each seed.
+    pub fn films(&self, world: &World, settings: &Settings) -> Result<Vec<Film>, DoctorError> {
+        let film = |seed: u64| {
+            let settings = Settings { seed: settings.seed.wrapping_add(seed), ..settings.clone() };
+            Ok(self.render(world, &settings)?.film)
         };
-        (0..SEEDS).map(mean).collect()
+        (0..SEEDS).map(film).collect()
     }
+}
+
+/// The mean of the picture of each film.
+pub fn means(films: &[Film]) -> Vec<f64> {
+    let mean = |film: &Film| {
+        let image = film.develop();
+        let sum: f64 = image.pixels.as_flattened().iter().map(|value| f64::from(*value)).sum();
+        sum / (3 * image.pixels.len()) as f64
+    };
+    films.iter().map(mean).collect()
+}
+
+/// Mean of some values, at least two, and its standard error.
+pub fn moments(values: &[f64]) -> (f64, f64) {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let squares = values.iter().map(|each| (each - mean) * (each - mean)).sum::<f64>();
+    (mean, (squares / (count * (count - 1.0))).sqrt())
 }
 
 /// What became of the samples of the picture.
@@ -162,12 +182,9 @@ pub fn same_light(
     (expected, found): (&[f64], &[f64]),
     allowed: f64,
 ) -> Finding {
-    let count = expected.len() as f64;
     let differences: Vec<f64> = expected.iter().zip(found).map(|(a, b)| b - a).collect();
-    let mean = differences.iter().sum::<f64>() / count;
-    let squares = differences.iter().map(|each| (each - mean) * (each - mean)).sum::<f64>();
-    let error = (squares / (count * (count - 1.0))).sqrt();
-    let brightness = expected.iter().sum::<f64>() / count;
+    let (mean, error) = moments(&differences);
+    let brightness = expected.iter().sum::<f64>() / expected.len() as f64;
     let is_same = mean.abs() <= allowed * brightness || mean.abs() <= LIMIT * error;
     let [change, noise] = [mean, error].map(|value| if brightness > 0.0 { 100.0 * value / brightness } else { value });
     if LIMIT * error > brightness && is_same {

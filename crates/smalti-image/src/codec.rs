@@ -17,7 +17,7 @@ impl From<&str> for Broken {
     }
 }
 
-/// The number of pixels, if a file of `file_size` bytes can hold so many: asked before memory is taken.
+/// The number of pixels, if a file of `file_size` bytes can hold them. Readers check it before they take memory.
 pub(crate) fn check_size(width: u32, height: u32, file_size: usize) -> Result<usize, Broken> {
     /// More than any codec reaches: deflate makes 1032 of one byte, DWA's blocks of zeros hold 64 pixels.
     const PIXELS_PER_BYTE: u64 = 1032 * 64;

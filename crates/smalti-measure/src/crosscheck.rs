@@ -12,7 +12,7 @@ use crate::compare::FLOOR;
 use crate::interval::Z;
 
 /// So many equal finds of paths, or more, are worth a normal distribution. Fewer are no check.
-const FEWEST: f64 = 16.0;
+pub const FEWEST_FINDS: f64 = 16.0;
 
 /// Standard errors by which paths must find more before a bias is stated: a true image is accused once in some thousands.
 const SHOWN: f64 = 3.5;
@@ -88,7 +88,7 @@ impl Block {
     }
 
     fn is_checked(&self) -> bool {
-        self.by_paths > 0.0 && self.by_paths * self.by_paths >= FEWEST * self.variance
+        self.by_paths > 0.0 && self.by_paths * self.by_paths >= FEWEST_FINDS * self.variance
     }
 
     fn margin(&self) -> f64 {

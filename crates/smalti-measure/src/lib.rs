@@ -14,7 +14,7 @@ mod timing;
 
 pub use bias::{BiasStatement, bias_statement};
 pub use compare::{CompareError, Comparison, PixelDifference, compare};
-pub use crosscheck::CrosscheckStatement;
+pub use crosscheck::{CrosscheckStatement, FEWEST_FINDS};
 pub use not_finite::{NotFinite, NotFinitePixel, not_finite};
 pub use repetitions::{Ends, REPETITIONS_FOR_INTERVAL, Repetitions, repetitions};
 pub use statement::{ErrorStatement, error_statement, noise};

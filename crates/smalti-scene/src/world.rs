@@ -34,8 +34,8 @@ pub fn root<'d>(document: &'d Spanned<DeTable<'d>>) -> Result<Section<'d>> {
     Section::of_entries(document.get_ref(), "the scene file".to_owned(), document.span(), KINDS)
 }
 
-/// What the document of the file `text` describes; mesh files are relative to the folder, and whoever watches hears of
-/// them.
+/// Reads the scene that a document describes; `text` is its file. Mesh files are relative to the folder, and the watch is
+/// called for each of them.
 pub fn read<'d>(document: &'d Spanned<DeTable<'d>>, text: &str, meshes: (&Path, &Watch)) -> Result<Loaded> {
     let root = root(document)?;
     let mut notes = Vec::new();

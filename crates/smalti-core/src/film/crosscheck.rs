@@ -5,7 +5,7 @@
 //! to the same samples: two estimates of the same light that share neither photons nor radii. Greys, the means of three
 //! channels.
 
-use super::{Counts, Film};
+use super::{Counts, Film, Pixel};
 
 /// What both ways found in the samples of a pixel, each sample times what it counts for.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -48,11 +48,11 @@ pub struct Crosschecked {
 }
 
 impl Crosschecked {
-    fn new(mean: [f64; 3], check: &Crosscheck, counts: &Counts) -> Self {
+    fn new(pixel: &Pixel, check: &Crosscheck, counts: &Counts) -> Self {
         let weight = counts.weight();
         let [even, odd] = check.by_photons.map(f64::from);
         Self {
-            mean: mean.iter().sum::<f64>() / 3.0,
+            mean: pixel.mean(counts).iter().sum::<f64>() / 3.0,
             by_photons: (even + odd) / weight,
             spread: (even - odd) / weight,
             by_paths: check.by_paths / weight,
@@ -65,19 +65,7 @@ impl Film {
     /// What photons bring and paths find again, in image order; `None` where nothing was found twice, and before every
     /// tile has samples of two rounds.
     pub fn crosschecks(&self) -> Option<Vec<Crosschecked>> {
-        let known = |tile: &super::Tile| !tile.crosschecks.is_empty() && tile.counts.halves[1] > 0;
-        if !self.tiles.iter().all(known) {
-            return None;
-        }
-        let mut found = vec![Crosschecked::default(); self.area.pixels()];
-        for tile in &self.tiles {
-            let mut checks = tile.crosschecks.iter();
-            self.for_each(tile, |index, pixel| {
-                let check = checks.next().copied().unwrap_or_default();
-                found[index] = Crosschecked::new(pixel.mean(&tile.counts), &check, &tile.counts);
-            });
-        }
-        Some(found)
+        self.noted(|tile| &tile.crosschecks, Crosschecked::new)
     }
 }
 

@@ -210,7 +210,7 @@ impl Tile {
 pub type Shift = [[f32; 3]; 2];
 
 /// A pixel, and what photon radii shift it by.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shifted {
     /// Mean of all samples.
     pub mean: [f64; 3],
@@ -288,23 +288,36 @@ impl Film {
     /// What photon radii shift each pixel by, in image order; `None` where no photons are asked, and before every tile
     /// has samples of two rounds.
     pub fn shifts(&self) -> Option<Vec<Shifted>> {
-        if self.tiles.iter().any(|tile| tile.counts.halves[1] == 0)
-            || self.tiles.iter().any(|tile| tile.shifts.is_empty())
-        {
+        self.noted(
+            |tile| &tile.shifts,
+            |pixel, [even, odd], counts| {
+                let mean = |sum: &[f32; 3], count: u32| sum.map(|value| f64::from(value) / f64::from(count));
+                let halves = [mean(even, counts.halves[0]), mean(odd, counts.halves[1])];
+                Shifted { mean: pixel.mean(counts), halves }
+            },
+        )
+    }
+
+    /// Each pixel with its entry in the notes that tiles keep beside their pixels, in image order; `None` where a tile has
+    /// no notes, or no samples of two rounds.
+    fn noted<N, T: Clone + Default>(
+        &self,
+        notes: impl Fn(&Tile) -> &[N],
+        made: impl Fn(&Pixel, &N, &Counts) -> T,
+    ) -> Option<Vec<T>> {
+        if self.tiles.iter().any(|tile| tile.counts.halves[1] == 0 || notes(tile).is_empty()) {
             return None;
         }
-        let mut shifts = vec![Shifted { mean: [0.0; 3], halves: [[0.0; 3]; 2] }; self.area.pixels()];
+        let mut all = vec![T::default(); self.area.pixels()];
         for tile in &self.tiles {
-            let counts = tile.counts.halves.map(f64::from);
-            let mut halves = tile.shifts.iter();
+            let mut notes = notes(tile).iter();
             self.for_each(tile, |index, pixel| {
-                let [even, odd] = halves.next().copied().unwrap_or_default();
-                let mean = |sum: [f32; 3], count: f64| sum.map(|value| f64::from(value) / count);
-                let halves = [mean(even, counts[0]), mean(odd, counts[1])];
-                shifts[index] = Shifted { mean: pixel.mean(&tile.counts), halves };
+                if let Some(note) = notes.next() {
+                    all[index] = made(pixel, note, &tile.counts);
+                }
             });
         }
-        Some(shifts)
+        Some(all)
     }
 
     /// Calls `visit` with the image index and the sums of every pixel of `tile`.

@@ -287,8 +287,8 @@ fn around([a, b]: Bounds, [c, d]: Bounds) -> Bounds {
     [[0, 1, 2].map(|k: usize| a[k].min(c[k])), [0, 1, 2].map(|k: usize| b[k].max(d[k]))]
 }
 
-/// The leaf on each point's side of all splits on the way down, in heaps of so many `leaves`. `split` gives coordinate and
-/// axis of a split by its number in the heap, from 0 on; lanes that are at their leaf ask for number 0.
+/// The leaf that holds each point, in a tree of `leaves` leaves for each lane. The function `split` gives the coordinate and
+/// the axis of a split by its number in the heap, from 0 on; a lane that has reached its leaf reads number 0.
 #[inline(always)]
 pub fn descend<L: Lanes>(l: L, leaves: L::U, point: V3<L>, split: impl Fn(L::U) -> (L::F, L::U)) -> L::U {
     let mut node = l.u(1);

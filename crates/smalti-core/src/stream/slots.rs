@@ -43,13 +43,12 @@ impl Slots {
         if self.twice.is_empty() {
             return;
         }
-        let (mut slots, mut greys) = ([0; 16], [0.0; 16]);
-        l.store_u(slot & l.u(0xffff), &mut slots);
-        l.store((radiance.x + radiance.y + radiance.z) * l.f(1.0 / 3.0), &mut greys);
-        let active = l.bitmask(mask);
-        for lane in (0..L::WIDTH).filter(|lane| active >> lane & 1 == 1) {
-            self.twice[slots[lane] as usize][way as usize] += greys[lane];
-        }
+        let (grey, none) = ((radiance.x + radiance.y + radiance.z) * l.f(1.0 / 3.0), l.f(0.0));
+        let both = match way {
+            Way::Photons => [grey, none],
+            Way::Paths => [none, grey],
+        };
+        add(l, &mut self.twice, mask, slot, both);
     }
 
     /// For each sample the difference of what photons within their radius and within half of its disc say. As a disc's
@@ -61,7 +60,7 @@ impl Slots {
     /// Adds to the shift.
     #[inline(always)]
     pub fn add_shift<L: Lanes>(&mut self, l: L, mask: L::M, slot: L::U, difference: Rgb<L>) {
-        add(l, &mut self.shift, mask, slot, difference);
+        add(l, &mut self.shift, mask, slot, [difference.x, difference.y, difference.z]);
     }
 
     /// The samples.
@@ -73,18 +72,18 @@ impl Slots {
     /// [`SLOT`](super::SLOT).
     #[inline(always)]
     pub fn add<L: Lanes>(&mut self, l: L, mask: L::M, slot: L::U, radiance: Rgb<L>) {
-        add(l, &mut self.radiance, mask, slot, radiance);
+        add(l, &mut self.radiance, mask, slot, [radiance.x, radiance.y, radiance.z]);
     }
 }
 
 #[inline(always)]
-fn add<L: Lanes>(l: L, to: &mut [[f32; 3]], mask: L::M, slot: L::U, radiance: Rgb<L>) {
+fn add<L: Lanes, const N: usize>(l: L, to: &mut [[f32; N]], mask: L::M, slot: L::U, values: [L::F; N]) {
     let mut slots = [0; 16];
-    let mut columns = [[0.0; 16]; 3];
+    let mut columns = [[0.0; 16]; N];
     l.store_u(slot & l.u(0xffff), &mut slots);
-    l.store(radiance.x, &mut columns[0]);
-    l.store(radiance.y, &mut columns[1]);
-    l.store(radiance.z, &mut columns[2]);
+    for (value, column) in values.into_iter().zip(&mut columns) {
+        l.store(value, column);
+    }
     let mut left = l.bitmask(mask);
     while left != 0 {
         let lane = left.trailing_zeros() as usize % 16;

@@ -69,7 +69,8 @@ pub struct Truth {
 }
 
 impl Truth {
-    /// That of a room, of so many samples by `auto` and by `path`; kept in `folder`, and read where it is there.
+    /// The truth of a room, with as many samples a pixel by `auto` and by `path`. The folder keeps it: pictures that are
+    /// there are read, others are rendered and written.
     pub fn of(number: u64, world: &World, [auto, path]: [u32; 2], folder: Option<&Path>) -> Result<Self> {
         let settings =
             |integrator, seed, spp| Settings { integrator, seed, spp, photons: Some(1 << 18), ..Settings::default() };

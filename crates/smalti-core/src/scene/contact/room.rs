@@ -6,10 +6,10 @@ use crate::scene::Scene;
 /// Part of a gap by which rays leave what is beside it.
 const PART: f64 = 1.0 / 64.0;
 
-/// On a plane points are known to about so many steps.
+/// The error of points on a plane, in steps of coordinates.
 const OFF_FACES: f64 = 2.0;
 
-/// On a sphere they are known to so many only; rays that start nearer may be taken for inside or outside.
+/// The error of points on a sphere, in steps: a ray that starts nearer to it may start on the other side.
 const OFF_SPHERES: f64 = 6.0;
 
 /// Spheres with a gap of fewer steps are one: some rays would find the inner one, and some not.
