@@ -53,15 +53,16 @@ impl Places {
     /// How a surface is called in a message on the file `text`: by its kind and line.
     pub fn name(&self, text: &str, world: &World, surface: Origin) -> String {
         let (kind, at) = match surface {
-            Origin::Polygon(index) => ("polygon", self.polygons.get(index as usize)),
+            Origin::Polygon(index) => {
+                let kind = match world.polygons[index as usize].vertices.len() {
+                    3 => "triangle",
+                    4 => "quad",
+                    _ => "polygon",
+                };
+                (kind, self.polygons.get(index as usize))
+            }
             Origin::Mesh(index, _) => ("mesh", self.meshes.get(index as usize)),
             Origin::Sphere(index) => ("sphere", self.spheres.get(index as usize)),
-        };
-        let corners = world.corners(surface).len();
-        let kind = match (kind, corners) {
-            ("polygon", 3) => "triangle",
-            ("polygon", 4) => "quad",
-            (kind, _) => kind,
         };
         match at.and_then(|at| text.get(..*at)) {
             Some(before) => format!("the {kind} in line {}", before.matches('\n').count() + 1),

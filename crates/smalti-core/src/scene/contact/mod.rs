@@ -2,7 +2,7 @@
 //!
 //! A glass that stands on a table has a bottom in the table's plane; a pane may be thinner than rays are moved off a
 //! surface. Both are found here, in f64, from the world as it was written: pairs of faces that overlap and are (nearly)
-//! parallel, and spheres within spheres. [`settle`] makes a compiled scene right by them; scenes without such pairs are
+//! parallel, and spheres within spheres. `settle` makes a compiled scene right by them; scenes without such pairs are
 //! left as they are, to the bit.
 
 mod joints;

@@ -28,7 +28,7 @@ pub fn examine(world: &World, frame: &Frame) -> Option<Finding> {
     (!small.is_empty()).then_some(Finding::Coarse { surface, extent, steps, largest, scene, things: small.len() })
 }
 
-/// Every thing with its box.
+/// Every thing with its box; a mesh without faces is nothing.
 pub fn things(world: &World) -> Vec<(Origin, DVec3, DVec3)> {
     let around = |points: &[DVec3]| {
         let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
@@ -38,7 +38,7 @@ pub fn things(world: &World) -> Vec<(Origin, DVec3, DVec3)> {
         let (low, high) = around(&polygon.vertices);
         (Origin::Polygon(index as u32), low, high)
     });
-    let meshes = world.meshes.iter().enumerate().map(|(index, mesh)| {
+    let meshes = world.meshes.iter().enumerate().filter(|(_, mesh)| !mesh.faces.is_empty()).map(|(index, mesh)| {
         let (low, high) = around(&mesh.vertices);
         (Origin::Mesh(index as u32, 0), low, high)
     });

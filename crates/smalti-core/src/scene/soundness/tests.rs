@@ -241,6 +241,19 @@ fn what_is_large_beside_what_is_small_is_told() {
     assert_eq!(found(&world), []);
 }
 
+/// All faces of a file may have been dropped: its corners make the scene large, but are nothing that could be named.
+#[test]
+fn a_mesh_without_faces_is_nothing() {
+    let mut world = world();
+    world.spheres.push(Sphere { centre: DVec3::ZERO, radius: 0.5, material: WHITE, radiance: None });
+    world.spheres.push(Sphere { centre: DVec3::X * 1e8, radius: 1.0, material: WHITE, radiance: None });
+    let corners = vec![DVec3::X * 1e9, DVec3::Y * 1e9];
+    world.meshes.push(Mesh { vertices: corners, faces: Vec::new(), material: WHITE, radiance: None });
+    let found = found(&world);
+    let [Finding::Coarse { surface, largest, .. }] = found[..] else { panic!("{found:?}") };
+    assert!([surface, largest].iter().all(|named| matches!(named, Origin::Sphere(_))), "{found:?}");
+}
+
 /// Walls and ground are boxes with the normals out, and the water reaches into them.
 #[test]
 fn water_may_end_within_its_walls() {
