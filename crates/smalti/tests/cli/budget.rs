@@ -77,7 +77,7 @@ fn a_time_that_is_up_ends_it() {
 #[test]
 fn a_time_shorter_than_a_sample_a_pixel_is_exceeded_by_no_more_than_that_and_said() {
     let folder = folder();
-    let large = "--size 640x480 --time 30ms --threads 1";
+    let large = "--size 1600x1200 --time 30ms --threads 1";
     for flags in [
         "--integrator path",
         "--integrator photon --photons 20000",
@@ -109,7 +109,7 @@ fn a_time_shorter_than_a_sample_a_pixel_is_exceeded_by_no_more_than_that_and_sai
 #[test]
 fn a_time_that_was_too_short_stands_in_the_text_too() {
     let folder = folder();
-    let output = run(&folder, "render room.toml --size 640x480 --time 30ms --progress none");
+    let output = run(&folder, "render room.toml --size 1600x1200 --time 30ms --progress none");
     let text = stdout(&output);
     assert!(text.lines().any(|line| line.contains("missed") && line.contains("the time of 30.0 ms")), "{text}");
     let in_time = stdout(&run(&folder, "render room.toml --time 1s --progress none"));
