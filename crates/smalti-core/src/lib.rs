@@ -21,5 +21,5 @@ pub mod stream;
 /// summaries carry it, as samples of two estimators must not be put together.
 ///
 /// 1: until November 2026. 2: photons with radii of their own, frames about a scene's details, sampler purposes with room.
-/// 3: smaller radii, from more photons.
-pub const ESTIMATOR: u32 = 3;
+/// 3: smaller radii, from more photons. 4: lamps chosen by what they can bring to the place.
+pub const ESTIMATOR: u32 = 4;

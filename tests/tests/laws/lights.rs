@@ -1,10 +1,11 @@
-//! Lights: chosen by power, sampled with the density that a chance hit is weighed by, and each seen under its solid
-//! angle.
+//! Lights: chosen by place or by power, sampled with the density that a chance hit is weighed by, and each seen under its
+//! solid angle.
 
 use core::f64::consts::PI;
 
 use glam::DVec3;
 use smalti_core::lanes::{One, V3};
+use smalti_core::light::place::{BY_POWER, MOST};
 use smalti_core::light::sample::{pdf_of_hit, sample};
 use smalti_core::scene::{Scene, World, compile};
 use smalti_tests::build::{at, grey, material, point_light, polygon, quad, sphere};
@@ -29,10 +30,19 @@ fn unit(random: &mut Random) -> f32 {
     (random.unit() * 16_777_216.0) as u32 as f32 / 16_777_216.0
 }
 
+/// A row drawn by place, or by power where there is none, and the chance of its lamp.
+fn draw(scene: &Scene, from: Option<V3<One>>, random: &mut Random) -> (usize, f32) {
+    let outlook = from.and_then(|place| scene.lights.seen_from(One, place));
+    let (row, chance) = scene.lights.choose(One, outlook.as_ref(), unit(random));
+    (row as usize, chance)
+}
+
 #[test]
-fn lights_are_chosen_by_their_power() {
+fn many_lights_are_chosen_by_their_power() {
     let mut world = lamps();
-    point_light(&mut world, DVec3::ZERO, 0.5);
+    for _ in 0..MOST {
+        point_light(&mut world, DVec3::ZERO, 0.5);
+    }
     let scene = compile(&world, false);
     let scale = scene.frame.scale;
     let area = |corners: &[DVec3]| -> f64 {
@@ -48,17 +58,59 @@ fn lights_are_chosen_by_their_power() {
     powers.push(5.0 * area(&polygons[2].vertices));
     powers.extend(world.spheres.iter().map(|s| s.radiance.unwrap()[0] * 4.0 * PI * s.radius * s.radius));
     powers.iter_mut().for_each(|power| *power *= PI * scale * scale);
-    powers.push(0.5 * 4.0 * PI * scale * scale);
+    powers.extend([0.5 * 4.0 * PI * scale * scale; MOST]);
     assert_eq!(powers.len(), scene.lights.rows.len());
 
     let mut counts = vec![0; powers.len()];
     let mut random = Random::new(11);
     let draws = 1_000_000;
     for _ in 0..draws {
-        counts[scene.lights.choose(One, unit(&mut random)) as usize] += 1;
+        counts[draw(&scene, None, &mut random).0] += 1;
     }
     let total: f64 = powers.iter().sum();
     let expected: Vec<_> = powers.iter().map(|power| power / total * f64::from(draws)).collect();
+    let p = chi_square(&counts, &expected);
+    assert!(p > sidak(0.01, crate::CHI_SQUARES), "{counts:?} instead of {expected:.0?}: p = {p:e}");
+}
+
+/// Small lamps of unlike power and distance, one of which shows its back to the middle.
+fn small_lamps() -> World {
+    let mut world = World::default();
+    let black = material(&mut world, grey(0.0));
+    let side = 1e-3;
+    let patch = |world: &mut World, height: f64, power: f64| {
+        let edges = (DVec3::Y * side / 2.0, DVec3::X * side / 2.0);
+        quad(world, at(0.0, 0.0, height), edges, black, Some(power / side / side));
+    };
+    patch(&mut world, 1.0, 1.0);
+    patch(&mut world, 0.1, 0.01);
+    patch(&mut world, -1.0, 5.0);
+    sphere(&mut world, at(0.0, 0.5, 0.0), side, black, Some(0.5 / side / side));
+    point_light(&mut world, at(0.2, 0.0, 0.0), 0.03);
+    world
+}
+
+#[test]
+fn few_lights_are_chosen_by_what_they_bring_to_the_place() {
+    let scene = compile(&small_lamps(), false);
+    let place = V3::splat(One, scene.frame.point(DVec3::ZERO).as_vec3().to_array());
+    // L · A / d² of the patches, L · π r² / d² of the ball, I / d² of the point; the back brings nothing.
+    let brought = [1.0, 0.01 / 0.01, 0.0, 0.5 * PI / 0.25, 0.03 / 0.04];
+    let powers = [PI, 0.01 * PI, 5.0 * PI, 0.5 * 4.0 * PI * PI, 0.03 * 4.0 * PI];
+    let [all_brought, all_power] = [brought, powers].map(|values| values.iter().sum::<f64>());
+    let by_power = f64::from(BY_POWER);
+    let chance = |k: usize| by_power * powers[k] / all_power + (1.0 - by_power) * brought[k] / all_brought;
+
+    let mut counts = vec![0; 5];
+    let mut random = Random::new(13);
+    let draws = 200_000;
+    for _ in 0..draws {
+        let (row, told) = draw(&scene, Some(place), &mut random);
+        counts[row] += 1;
+        assert!((f64::from(told) / chance(row) - 1.0).abs() < 0.01, "row {row}: {told} instead of {}", chance(row));
+    }
+    // The lamps are not points: their chances are those of points to within 0.6 %, far below what this many draws tell.
+    let expected: Vec<_> = (0..5).map(|k| chance(k) * f64::from(draws)).collect();
     let p = chi_square(&counts, &expected);
     assert!(p > sidak(0.01, crate::CHI_SQUARES), "{counts:?} instead of {expected:.0?}: p = {p:e}");
 }
@@ -72,9 +124,12 @@ fn every_number_falls_on_a_light_that_has_power() {
     world.polygons[0].radiance = Some([0.0; 3]);
     sphere(&mut world, at(0.0, 0.0, -1.0), 0.1, black, Some(0.0));
     let lights = compile(&world, false).lights;
-    for u in [0.0, f32::MIN_POSITIVE, 0.5, 1.0 - f32::EPSILON / 2.0] {
-        let row = lights.choose(One, u) as usize;
-        assert!(lights.rows[row][15].is_finite(), "{u} falls on row {row}");
+    let outlook = lights.seen_from(One, V3::splat(One, [0.0; 3]));
+    for outlook in [None, outlook] {
+        for u in [0.0, f32::MIN_POSITIVE, 0.5, 1.0 - f32::EPSILON / 2.0] {
+            let (row, chance) = lights.choose(One, outlook.as_ref(), u);
+            assert!(lights.power(row as usize) > 0.0 && chance > 0.0, "{u} falls on row {row}");
+        }
     }
 }
 
@@ -86,18 +141,21 @@ fn samples(scene: &Scene, from: DVec3, count: u32) -> impl Iterator<Item = (f64,
     let emitting: Vec<usize> = (0..scene.classes.len()).filter(|prim| scene.classes[*prim] >> 4 != 0).collect();
     (0..count).map(move |_| {
         let x = V3::splat(One, place);
-        let row = scene.lights.choose(One, unit(&mut random));
+        let outlook = scene.lights.seen_from(One, x);
+        let (row, chance) = scene.lights.choose(One, outlook.as_ref(), unit(&mut random));
         let numbers = (unit(&mut random), unit(&mut random));
         let incident = sample(One, &scene.lights, row, (x, V3::splat(One, [0.0, 0.0, 1.0])), numbers);
         let surface = scene.lights.surfaces[row as usize];
         let prim = emitting.iter().find(|prim| scene.shades[**prim][7].to_bits() == surface).unwrap();
         let shade = scene.shades[*prim];
-        let emitter = scene.lights.emitters[(scene.classes[*prim] >> 4) as usize - 1];
+        let number = (scene.classes[*prim] >> 4) - 1;
+        let emitter = scene.lights.emitters[number as usize];
         let distance = incident.reach.dot(One, incident.reach).sqrt();
         let is_sphere = surface >= scene.planes;
         let hit = (x, incident.reach.normalised(One), distance);
         let by_hit = pdf_of_hit(One, &emitter, &[shade[0], shade[1], shade[2], shade[3]], is_sphere, hit);
-        (f64::from(incident.pdf(One)), f64::from(by_hit), incident.radiance.x > 0.0)
+        let by_hit = by_hit * scene.lights.chance_of(One, outlook.as_ref(), number);
+        (f64::from(incident.pdf(One) * chance), f64::from(by_hit), incident.radiance.x > 0.0)
     })
 }
 

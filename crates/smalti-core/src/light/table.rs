@@ -1,6 +1,8 @@
 //! The table of lights: one row a planar patch (parallelogram or triangle), sphere or point, with its share of the
 //! choice; and one row an emitter (a primitive that emits), for paths that hit it.
 
+use super::lamps::by_place;
+use super::place::{Lamps, Outlook};
 use crate::lanes::{Lanes, V3};
 use crate::sampling::discrete;
 
@@ -20,11 +22,17 @@ pub enum Kind {
     Sky = 4,
 }
 
+impl Kind {
+    /// All kinds, by their numbers.
+    const ALL: [Self; 5] = [Self::Parallelogram, Self::Triangle, Self::Sphere, Self::Point, Self::Sky];
+}
+
 /// A row: place (12: origin, e1, e2, normal; or centre and radius), radiance or intensity (3), 1 / (pick · pdf): area /
-/// pick for a patch, 1 / pick otherwise.
+/// pick for a patch, 1 / pick otherwise. Where lamps are chosen by place, the pick is that among the rows of the lamp.
 pub type Row = [f32; 16];
 
-/// An emitter: radiance (3), the density of its points by area and choice (patches) or its pick (sphere).
+/// An emitter: radiance (3), the density of its points by area and choice (patches) or its pick (sphere). Where lamps
+/// are chosen by place, the choice is not in it.
 pub type Emitter = [f32; 4];
 
 /// All lights with extent or position.
@@ -40,6 +48,8 @@ pub struct LightTable {
     pub cumulative: Vec<f32>,
     /// One for each primitive that emits.
     pub emitters: Vec<Emitter>,
+    /// Chances by place, where there are several lamps and not too many.
+    pub by_place: Option<Lamps>,
     power: Vec<f64>,
     area: Vec<f64>,
     emitter_of: Vec<Option<u32>>,
@@ -102,10 +112,14 @@ impl LightTable {
         self.kinds.contains(&(kind as u32))
     }
 
-    /// Shares the choice out by power, once every light is there.
+    /// Shares the choice out, once every light is there.
     pub fn finish(&mut self) {
-        let (cumulative, shares) = discrete::shares(&self.power);
+        let (cumulative, mut shares) = discrete::shares(&self.power);
         self.cumulative = cumulative;
+        self.by_place = by_place(self);
+        if self.by_place.is_some() {
+            shares = self.shares_within_lamps();
+        }
         for (index, share) in shares.into_iter().enumerate() {
             self.rows[index][15] = if share > 0.0 { (self.area[index] / share) as f32 } else { f32::INFINITY };
             if let Some(emitter) = self.emitter_of[index] {
@@ -116,10 +130,46 @@ impl LightTable {
         }
     }
 
-    /// The row that `u` in [0, 1) falls on.
+    /// Each row's share of the area of its emitter.
+    fn shares_within_lamps(&self) -> Vec<f64> {
+        let areas = self.areas();
+        let share = |row| match (self.emitter_of[row], self.area(row)) {
+            (Some(emitter), Some(area)) if areas[emitter as usize] > 0.0 => area / areas[emitter as usize],
+            _ => 1.0,
+        };
+        (0..self.rows.len()).map(share).collect()
+    }
+
+    /// The lamps as seen from a place, for [`choose`](Self::choose) and [`chance_of`](Self::chance_of).
     #[inline(always)]
-    pub fn choose<L: Lanes>(&self, l: L, u: L::F) -> L::U {
-        discrete::choose(l, &self.cumulative, u)
+    pub fn seen_from<L: Lanes>(&self, l: L, place: V3<L>) -> Option<Outlook<L>> {
+        self.by_place.as_ref().map(
+            #[inline(always)]
+            |lamps| lamps.seen_from(l, place),
+        )
+    }
+
+    /// The row that `u` in [0, 1) falls on, and the chance that is not in the row itself.
+    #[inline(always)]
+    pub fn choose<L: Lanes>(&self, l: L, outlook: Option<&Outlook<L>>, u: L::F) -> (L::U, L::F) {
+        match (&self.by_place, outlook) {
+            (Some(lamps), Some(outlook)) => lamps.choose(l, outlook, u),
+            _ => (discrete::choose(l, &self.cumulative, u), l.f(1.0)),
+        }
+    }
+
+    /// The chance of an emitter that is not in the emitter itself.
+    #[inline(always)]
+    pub fn chance_of<L: Lanes>(&self, l: L, outlook: Option<&Outlook<L>>, emitter: L::U) -> L::F {
+        match (&self.by_place, outlook) {
+            (Some(lamps), Some(outlook)) => lamps.chance_of(l, outlook, emitter),
+            _ => l.f(1.0),
+        }
+    }
+
+    /// Kind of a row.
+    pub fn kind(&self, row: usize) -> Kind {
+        Kind::ALL[self.kinds[row] as usize]
     }
 
     /// Power of a row, mean of the channels, in the frame's units.

@@ -2,6 +2,7 @@
 
 use super::{Decision, MOST_BOUNCES, Plan, Stage, photons};
 use crate::film::Pixel;
+use crate::light::place::{Lamp, Lamps, MOST};
 use crate::light::table::Kind;
 use crate::photon::pass::Pass;
 use crate::photon::{self, SUB_MAPS};
@@ -65,12 +66,25 @@ fn lights(scene: &Scene) -> Option<Decision> {
     match rows {
         0 => None,
         1 => Some(decision("lights", "1 light, no choice", "a choice table is needed only with several", 0)),
-        _ => Some(decision(
+        _ => Some(choice_of_lights(scene, rows)),
+    }
+}
+
+fn choice_of_lights(scene: &Scene, rows: usize) -> Decision {
+    let table = rows as u64 * 76;
+    match &scene.lights.by_place {
+        Some(Lamps { lamps, .. }) => decision(
+            "lights",
+            format!("{rows} lights, chosen by what they can bring to the place"),
+            "one light sample goes to one light: a small one near by may bring most",
+            table + (lamps.len() * size_of::<Lamp>() + rows * size_of::<f32>()) as u64,
+        ),
+        None => decision(
             "lights",
             format!("{rows} lights, chosen by power"),
-            "one light sample goes to one light",
-            rows as u64 * 76,
-        )),
+            format!("one light sample goes to one light; chances go by place with 2 to {MOST} lamps"),
+            table,
+        ),
     }
 }
 

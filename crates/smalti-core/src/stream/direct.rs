@@ -15,7 +15,7 @@ use crate::accel::cones::{Cones, Parts};
 use crate::accel::{Accel, Tracer};
 use crate::geometry::Ray;
 use crate::lanes::{Lanes, Rgb, V3};
-use crate::light::{sample::sample, table::LightTable};
+use crate::light::{place::Outlook, sample::sample, table::LightTable};
 use crate::mutant::mutant;
 use crate::photon::visibility::{Decided, ONE_IN};
 use crate::photon::{Surfaces, Visibility};
@@ -165,6 +165,8 @@ struct Receiver<L: Lanes> {
     active: L::M,
     keys: Keys<L>,
     bounce: u32,
+    /// The lamps as seen from here, where they are chosen by place.
+    outlook: Option<Outlook<L>>,
     /// Numbers for the place on a light.
     place: Fan<L>,
     prim: L::U,
@@ -202,8 +204,10 @@ impl<L: Lanes> Receiver<L> {
     fn new(l: L, context: &Context<'_>, bounce: u32, vertices: &Stream, at: usize) -> Self {
         let Settings { sampler, shadow_rays, .. } = *context.settings;
         let keys = vertices.keys(l, at);
+        let point = vertices.v3(l, ORIGIN, at);
         Self {
-            point: vertices.v3(l, ORIGIN, at),
+            point,
+            outlook: context.lights.seen_from(l, point),
             normal: vertices.v3(l, DIRECTION, at),
             leaves: vertices.u(l, LEAVES, at),
             active: vertices.active(l, at),
@@ -251,17 +255,17 @@ impl<L: Lanes> Receiver<L> {
     #[inline(always)]
     fn sample(&self, l: L, context: &Context<'_>, number: u32) -> Arriving<L> {
         let Settings { sampler, shadow_rays, .. } = *context.settings;
-        let row = if context.lights.rows.len() > 1 {
-            let part = (number, shadow_rays);
-            context.lights.choose(l, one_of(l, sampler, self.keys, self.bounce, Purpose::LightChoice, part))
+        let (row, chance) = if context.lights.rows.len() > 1 {
+            let u = one_of(l, sampler, self.keys, self.bounce, Purpose::LightChoice, (number, shadow_rays));
+            context.lights.choose(l, self.outlook.as_ref(), u)
         } else {
-            l.u(0)
+            (l.u(0), l.f(1.0))
         };
         let incident = sample(l, context.lights, row, (self.point, self.normal), self.place.pair(l, number));
         let cosine = self.normal.dot(l, incident.reach);
         // Lₑ · cosθ / (N·p + q) with q = cosθ/π: as cosθ / p = top / bottom, that is Lₑ · top / (N · bottom + top / π).
         let counted = if mutant!("no_cosine_at_the_receiver") { incident.reach.length(l) } else { cosine };
-        let (top, bottom) = (counted * incident.spread.0, incident.spread.1);
+        let (top, bottom) = (counted * incident.spread.0, incident.spread.1 * chance);
         let by_chance = if context.weighed { l.keep(incident.by_chance, top * l.f(FRAC_1_PI)) } else { l.f(0.0) };
         let count = l.f(shadow_rays as f32);
         let irradiance = incident.radiance.scale(top / l.mul_add(count, bottom, by_chance));

@@ -35,7 +35,10 @@ pub fn run<L: Lanes>(
         let front = l.lt(normal.dot(l, wi), l.f(0.0));
 
         let by_scatter = hits.pdf(l, at);
-        let by_light = pdf_of_hit(l, &emitter, &[x, y, z, w], is_sphere, (origin, wi, t));
+        let outlook = scene.lights.seen_from(l, origin);
+        let chance = scene.lights.chance_of(l, outlook.as_ref(), number);
+        let chance = if mutant!("hits_weighed_without_the_choice") { l.f(1.0) } else { chance };
+        let by_light = pdf_of_hit(l, &emitter, &[x, y, z, w], is_sphere, (origin, wi, t)) * chance;
         let balanced = by_scatter / l.mul_add(l.f(shadow_rays as f32), by_light, by_scatter);
         let scattered = l.lt(l.f(0.0), by_scatter);
         // The power heuristic here and the balance heuristic there.
