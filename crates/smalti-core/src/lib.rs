@@ -4,6 +4,7 @@ pub mod accel;
 pub mod bsdf;
 pub mod film;
 pub mod geometry;
+pub mod glint;
 pub mod hunt;
 pub mod lanes;
 pub mod light;
@@ -21,5 +22,6 @@ pub mod stream;
 /// summaries carry it, as samples of two estimators must not be put together.
 ///
 /// 1: until November 2026. 2: photons with radii of their own, frames about a scene's details, sampler purposes with room.
-/// 3: smaller radii, from more photons. 4: lamps chosen by what they can bring to the place.
+/// 3: smaller radii, from more photons. 4: lamps chosen by what they can bring to the place, and samples
+/// sent to glints.
 pub const ESTIMATOR: u32 = 4;

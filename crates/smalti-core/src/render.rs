@@ -5,6 +5,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::film::{Counts, Crosscheck, ROUND, Shift, Tile};
+use crate::glint::Glints;
 pub use crate::lanes::Level;
 use crate::lanes::dispatch;
 use crate::mutant::mutant;
@@ -72,6 +73,8 @@ pub struct Renderer {
     settings: Settings,
     level: Level,
     token: Option<fearless_simd::Level>,
+    /// Where glints are, if the plan looks for any.
+    glints: Option<Glints>,
     /// Buffers of photon passes that nobody uses at the moment.
     pub(crate) photon_workspaces: Mutex<Vec<PhotonWorkspace>>,
 }
@@ -100,7 +103,7 @@ impl Renderer {
     pub fn new(world: &World, settings: Settings, level: Level) -> Result<Self, PlanError> {
         let scene = compile(world, settings.integrator == Integrator::Whitted);
         let plan = Plan::new(&scene, &settings)?;
-        Ok(Self { scene, plan, settings, level, token: level.token(), photon_workspaces: Mutex::default() })
+        Ok(Self::of(scene, plan, settings, level))
     }
 
     /// Compiles `world` and plans to show a photon map of it, instead of all the light.
@@ -110,7 +113,12 @@ impl Renderer {
     pub fn showing(world: &World, settings: Settings, show: Show, level: Level) -> Result<Self, PlanError> {
         let scene = compile(world, false);
         let plan = Plan::showing(&scene, &settings, show)?;
-        Ok(Self { scene, plan, settings, level, token: level.token(), photon_workspaces: Mutex::default() })
+        Ok(Self::of(scene, plan, settings, level))
+    }
+
+    fn of(scene: Scene, plan: Plan, settings: Settings, level: Level) -> Self {
+        let glints = (!plan.glints.is_empty()).then(|| Glints::new(settings.width, settings.height));
+        Self { scene, plan, settings, level, token: level.token(), glints, photon_workspaces: Mutex::default() }
     }
 
     /// Settings of this render.
@@ -265,6 +273,10 @@ impl Renderer {
     /// Camera rays of some samples of the workspace's pixels, and a slot for each.
     pub(crate) fn generate(&self, workspace: &mut Workspace, samples: Range<u32>) {
         let Workspace { pixels, rays, slots, .. } = workspace;
+        let view = &self.scene.views[self.settings.camera];
+        if let Some(glints) = &self.glints {
+            pixels.find_glints(|pixel| glints.at(self, pixel));
+        }
         let mut first = 0;
         let mut round = None;
         for sample in samples {
@@ -272,15 +284,19 @@ impl Renderer {
                 round = Some(sample / ROUND);
                 pixels.enter_round(self.settings.seed, sample / ROUND);
             }
-            let view = &self.scene.views[self.settings.camera];
-            let medium = self.scene.media.as_ref().map_or(CLEAR, |media| media.views[self.settings.camera]);
-            let what = (view, medium, &self.settings, self.plan.columns);
+            let what = (view, self.medium_of_camera(), &self.settings, self.plan.columns);
             dispatch!(self.token, l => generate::run(l, what, pixels, (sample, first), rays));
+            generate::towards_glints((view, &self.settings), pixels, (sample, first), rays);
             first = rays.len();
         }
         assert!(first <= MOST_SLOTS);
         let shifts = self.plan.has(|stage| matches!(stage, Stage::Caustic | Stage::Gather));
         slots.reset(first, shifts, self.plan.finds_twice());
+    }
+
+    /// Number of the medium that the camera is in.
+    pub(crate) fn medium_of_camera(&self) -> u32 {
+        self.scene.media.as_ref().map_or(CLEAR, |media| media.views[self.settings.camera])
     }
 
     /// Runs one stage over its stream: the one place where stages are told apart.

@@ -3,6 +3,7 @@
 mod dielectric;
 mod exact;
 mod furnace;
+mod glints;
 mod lambert;
 mod photons;
 mod progressive;

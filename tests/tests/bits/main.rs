@@ -3,6 +3,7 @@
 mod accel;
 mod adaptive;
 mod frame;
+mod glints;
 mod hidden;
 mod photons;
 mod rays;

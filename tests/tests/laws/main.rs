@@ -1,6 +1,7 @@
 //! Laws that the kernels must obey, whatever the scene: distributions, densities, energy, and geometry without gaps.
 
 mod closed;
+mod glints;
 mod kernels;
 mod leaving;
 mod lights;

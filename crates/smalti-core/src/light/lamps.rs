@@ -37,6 +37,13 @@ pub fn by_place(table: &LightTable) -> Option<Lamps> {
     })
 }
 
+/// The sphere around each emitter: centre and radius, in the frame.
+pub fn around_emitters(table: &LightTable) -> Vec<[f32; 4]> {
+    let lamps = rows_of_lamps(table).into_iter().take(table.emitters.len());
+    let spheres = lamps.map(|rows| around(table, &rows));
+    spheres.map(|Lamp { centre: [x, y, z], radius, .. }| [x, y, z, radius]).collect()
+}
+
 /// Rows of each lamp: those of each emitter, then each row that no path can hit.
 fn rows_of_lamps(table: &LightTable) -> Vec<Vec<usize>> {
     let mut lamps = vec![Vec::new(); table.emitters.len()];

@@ -4,7 +4,7 @@
 //! the solid-angle pdf of having chosen it) and *pdf* (the same pdf for a direction that hit it by chance). The three
 //! agree, which is what multiple importance sampling rests on.
 
-mod lamps;
+pub(crate) mod lamps;
 pub mod place;
 pub mod sample;
 pub mod table;

@@ -10,6 +10,7 @@ pub use photons::Photons;
 
 use crate::accel::cones::Parts;
 use crate::accel::{Accel, occluders};
+use crate::glint::{Target, targets};
 use crate::light::table::Kind;
 use crate::photon::{Quantity, SUB_MAPS, Show, show};
 use crate::scene::{Class, Scene};
@@ -105,6 +106,8 @@ pub struct Plan {
     pub parts: Parts,
     /// Photon maps.
     pub photons: Option<Photons>,
+    /// Lamps that are looked for where they may be seen far smaller than a pixel.
+    pub glints: Vec<Target>,
     /// The decisions with their reasons.
     pub decisions: Vec<Decision>,
 }
@@ -120,8 +123,10 @@ impl Plan {
         let (occluders, parts) = (Accel::new(scene, &in_the_way), Parts::new(scene, &in_the_way));
         let photons = Photons::new(scene, settings, !in_the_way.is_empty());
         let stages = stages(scene, settings, photons.as_ref());
+        let glints = targets(scene, settings);
         let columns = columns(scene, settings, photons.as_ref());
-        let plan = Self { columns, occluders, parts, photons, ..Self::of(scene, settings, stages) };
+        let columns = Columns { eta: columns.eta || !glints.is_empty(), ..columns };
+        let plan = Self { columns, occluders, parts, photons, glints, ..Self::of(scene, settings, stages) };
         Ok(plan.reasoned(scene, settings))
     }
 
@@ -149,6 +154,7 @@ impl Plan {
             occluders: Accel::new(scene, &[]),
             parts: Parts::new(scene, &[]),
             photons: None,
+            glints: Vec::new(),
             decisions: Vec::new(),
         }
     }

@@ -15,6 +15,7 @@ pub fn of(plan: &Plan, scene: &Scene, settings: &Settings) -> Vec<Decision> {
     let mut decisions = vec![accelerator(plan, scene)];
     decisions.extend(occluders(plan, scene));
     decisions.extend(lights(scene));
+    decisions.extend(glints(plan));
     decisions.extend(photon_maps(plan, scene, settings));
     decisions.extend(plan.stages.iter().map(|stage| stage_reason(stage, scene, settings)));
     decisions.extend(absent(plan, scene));
@@ -86,6 +87,15 @@ fn choice_of_lights(scene: &Scene, rows: usize) -> Decision {
             table,
         ),
     }
+}
+
+fn glints(plan: &Plan) -> Option<Decision> {
+    (!plan.glints.is_empty()).then(|| {
+        let choice = format!("{} looked for", counted(plan.glints.len(), "lamp"));
+        let reason = "seen directly or in what is specular, their pictures may be far smaller than a pixel: half of the \
+                      samples of such a pixel go there";
+        decision("glints", choice, reason, 0)
+    })
 }
 
 /// The photon maps, or why there are none.
@@ -188,6 +198,8 @@ fn absent(plan: &Plan, scene: &Scene) -> Vec<Decision> {
     note(!scene.has(Class::Dielectric), "dielectric", "no primitive is a dielectric");
     note(scene.environment.is_none(), "environment", "nothing arrives from infinity");
     note(scene.lights.rows.is_empty(), "direct light", "the scene has no light with a place");
+    let hit = !scene.lights.emitters.is_empty();
+    note(hit && plan.glints.is_empty(), "glints", "no lamp is looked for that is seen far smaller than a pixel");
     note(
         !plan.has(|stage| *stage == Stage::Diffuse) && scene.has(Class::Lambert),
         "diffuse bounce",
@@ -204,8 +216,12 @@ fn columns(plan: &Plan) -> Decision {
         reasons.push("light is found in two ways");
     }
     if plan.columns.eta {
-        names.push("refraction's n²");
-        reasons.push("something refracts");
+        names.push("factor of radiance");
+        reasons.push(if plan.glints.is_empty() {
+            "n² where something refracts"
+        } else {
+            "n² where something refracts, density of the place in pixels with glints"
+        });
     }
     if plan.columns.medium {
         names.push("medium");

@@ -86,7 +86,7 @@ pub fn split<L: Lanes>(l: L, scene: &Scene, fresnel: Fresnel, least: f32, hits: 
 }
 
 /// Hits on a boundary and what it does to them.
-struct Crossing<L: Lanes> {
+pub struct Crossing<L: Lanes> {
     hit: surface::Hit<L>,
     /// Normal on the side the ray came from.
     side: V3<L>,
@@ -97,8 +97,9 @@ struct Crossing<L: Lanes> {
 }
 
 impl<L: Lanes> Crossing<L> {
+    /// The hits of the packet at `at`.
     #[inline(always)]
-    fn at(l: L, scene: &Scene, fresnel: Fresnel, hits: &Stream, at: usize) -> Self {
+    pub fn at(l: L, scene: &Scene, fresnel: Fresnel, hits: &Stream, at: usize) -> Self {
         let hit = surface::hit(l, scene, hits, at);
         let side = V3::select(l, hit.outside, hit.normal, -hit.normal);
         let cosine = -side.dot(l, hits.v3(l, DIRECTION, at));
@@ -118,13 +119,13 @@ impl<L: Lanes> Crossing<L> {
 
     /// What is reflected and what is refracted.
     #[inline(always)]
-    fn shares(&self, l: L) -> [L::F; 2] {
+    pub fn shares(&self, l: L) -> [L::F; 2] {
         [self.reflectance, l.f(1.0) - self.reflectance]
     }
 
     /// The reflected rays where `reflects`, else the refracted ones.
     #[inline(always)]
-    fn rays(&self, l: L, reflects: L::M, hits: &Stream, at: usize, throughput: V3<L>) -> Scattered<L> {
+    pub fn rays(&self, l: L, reflects: L::M, hits: &Stream, at: usize, throughput: V3<L>) -> Scattered<L> {
         let incoming = hits.v3(l, DIRECTION, at);
         let eta = self.boundary.eta;
         let bend = l.mul_add(eta, self.boundary.cosine, -self.boundary.cosine_refracted);

@@ -1,9 +1,12 @@
 //! Camera rays: the samples of a batch of pixels, block after block of neighbours, so that the rays of a packet stay
 //! close together.
 
+use glam::DVec3;
+
 use super::{Columns, DIRECTION, ETA, KEY, LEAVES, MEDIUM, ORIGIN, PDF, SLOT, Stream, THROUGHPUT};
 use crate::film::ROUND;
-use crate::lanes::{Lanes, V3};
+use crate::glint::Mixture;
+use crate::lanes::{Lanes, One, V3};
 use crate::light::table::NO_SURFACE;
 use crate::mutant::mutant;
 use crate::sampling::{Keys, Purpose, pair, sampler::pixel_key};
@@ -24,6 +27,8 @@ pub struct Pixels {
     count: usize,
     /// What [`Pixels::set`] was asked for last.
     batch: Option<(Rect, usize, usize)>,
+    /// Those of them that have glints, by place in the batch.
+    glints: Option<Vec<(usize, Mixture)>>,
 }
 
 impl Pixels {
@@ -34,6 +39,7 @@ impl Pixels {
         }
         self.batch = Some((area, from, to));
         self.count = to - from;
+        self.glints = None;
         self.numbers.clear();
         number_blocks(area, &mut self.numbers);
         self.numbers.truncate(to);
@@ -45,6 +51,15 @@ impl Pixels {
         // A packet may read past the last pixel.
         self.x.resize(self.count + 16, 0);
         self.y.resize(self.count + 16, 0);
+    }
+
+    /// Takes note of the pixels that have glints; once for each batch.
+    pub fn find_glints<'g>(&mut self, at: impl Fn((u32, u32)) -> Option<&'g Mixture>) {
+        if self.glints.is_some() {
+            return;
+        }
+        let pixels = self.x.iter().copied().zip(self.y.iter().copied()).take(self.count).enumerate();
+        self.glints = Some(pixels.filter_map(|(number, pixel)| Some((number, at(pixel)?.clone()))).collect());
     }
 
     /// Which pixels of their area they are, counted row by row.
@@ -109,6 +124,31 @@ pub fn run<L: Lanes>(
         }
     }
     rays.set_len(first + pixels.count);
+}
+
+/// Sends the rays of pixels with glints, of those that [`run`] has written for the same sample, to where the glints are.
+pub fn towards_glints(
+    (view, settings): (&View, &Settings),
+    pixels: &Pixels,
+    (sample, first): (u32, usize),
+    rays: &mut Stream,
+) {
+    let index = (sample % ROUND).reverse_bits();
+    for (at, mixture) in pixels.glints.iter().flatten() {
+        let (u, v) = place(One, settings, Keys { key: pixels.key[*at], index });
+        let ([x, y], weight) = mixture.sample([u, v]);
+        let place = [f64::from(pixels.x[*at]) + f64::from(x), f64::from(pixels.y[*at]) + f64::from(y)];
+        rays.set_triple(DIRECTION, first + at, direction(view, settings, place));
+        rays.set_value(ETA, first + at, weight.to_bits());
+    }
+}
+
+/// The unit direction of the camera ray through a place of the picture, in pixels.
+pub fn direction(view: &View, settings: &Settings, [x, y]: [f64; 2]) -> [f32; 3] {
+    let [right, up, forward] = [view.right, view.up, view.forward].map(|v| DVec3::from_array(v.map(f64::from)));
+    let (width, height) = (f64::from(settings.width), f64::from(settings.height));
+    let (to_right, to_up) = ((2.0 * x - width) / height, (height - 2.0 * y) / height);
+    (forward + right * to_right + up * to_up).normalize().as_vec3().to_array()
 }
 
 /// The place in the pixel.

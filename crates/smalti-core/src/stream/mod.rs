@@ -46,7 +46,8 @@ pub const PRIM: usize = 13;
 /// Solid-angle density with which the last scattering chose the direction; 0 after a specular one or the camera, or −1
 /// after a diffuse and then only specular ones where the plan wants it marked. Only where light can be found in two ways.
 pub const PDF: usize = 14;
-/// Product of (n_i / n_t)² over the refractions so far. Only where something refracts.
+/// Product of (n_i / n_t)² over the refractions so far, and 1 / the density of the place in the pixel. Only where something
+/// refracts, or pixels have glints.
 pub const ETA: usize = 15;
 /// Number of the medium that the ray travels in. Only where something absorbs.
 pub const MEDIUM: usize = 16;
@@ -210,6 +211,18 @@ impl Stream {
     /// Column `column` of path `at`.
     pub fn value(&self, column: usize, at: usize) -> u32 {
         self.columns[column * self.stride + at]
+    }
+
+    /// Overwrites column `column` of path `at`.
+    pub fn set_value(&mut self, column: usize, at: usize, value: u32) {
+        self.columns[column * self.stride + at] = value;
+    }
+
+    /// Overwrites columns `column`, `column + 1`, `column + 2` of path `at`.
+    pub fn set_triple(&mut self, column: usize, at: usize, values: [f32; 3]) {
+        for (k, value) in values.into_iter().enumerate() {
+            self.set_value(column + k, at, value.to_bits());
+        }
     }
 
     /// Slot of path `at`.
