@@ -97,7 +97,7 @@ fn fault(stream: &Stream, at: usize, hit: bool) -> Option<(&'static str, [f32; 3
         ("direction", direction, off.abs() <= LENGTH),
         ("throughput", throughput, finite(&throughput) && throughput.iter().all(|x| *x >= 0.0)),
         ("pdf", [pdf, 0.0, 0.0], pdf.is_finite() && (pdf >= 0.0 || pdf == -1.0)),
-        ("product of squared indices", [eta, 0.0, 0.0], eta.is_finite() && eta > 0.0),
+        ("factor of radiance", [eta, 0.0, 0.0], eta.is_finite() && eta >= 0.0),
         ("distance", [distance, 0.0, 0.0], distance.is_finite() && distance > 0.0),
     ]
     .into_iter()

@@ -15,17 +15,22 @@ fn mean(mixture: &Mixture, of: impl Fn([f32; 2]) -> f64) -> f64 {
 
 #[test]
 fn samples_spread_over_glints_keep_every_mean() {
-    let region = |low, high| Region { low, high };
+    let region = Region::rectangle;
+    let tilted = Region { corner: [0.2, 0.3], edges: [[0.5, 0.45], [0.03, 0.04]] };
+    let out = Region { corner: [-0.1, 0.8], edges: [[0.3, 0.1], [0.1, 0.4]] };
     let small = region([0.7, 0.1], [0.702, 0.11]);
     let mixtures = [
         vec![small],
         vec![region([0.0, 0.0], [1.0, 1.0])],
         vec![region([0.1, 0.2], [0.3, 0.25]), region([0.2, 0.22], [0.5, 0.6]), small],
         vec![small, small],
+        vec![tilted],
+        vec![out],
+        vec![tilted, small, out],
     ];
     for regions in mixtures {
         let mixture = Mixture::new(regions);
-        let inside = |place: [f32; 2]| f64::from((0..2).all(|k| small.low[k] <= place[k] && place[k] < small.high[k]));
+        let inside = |place: [f32; 2]| f64::from(small.holds(place));
         let [x, y] = [0, 1].map(|k: usize| move |place: [f32; 2]| f64::from(place[k]));
         for (what, found, expected) in [
             ("1", mean(&mixture, |_| 1.0), 1.0),

@@ -32,7 +32,7 @@ pub struct Link {
     pub direction: DVec3,
     /// The primitive that it hits, [`MISS`] for none.
     pub hit: u32,
-    /// Stands for the primitives that the chain has met before: unlike ways have unlike numbers, but for rare chance.
+    /// Stands for the turns that the chain has taken, and where: unlike ways have unlike numbers, but for rare chance.
     pub way: u64,
     /// Whether the chain has met spheres alone, one at least.
     pub round: bool,
@@ -50,7 +50,7 @@ impl Front {
     pub fn begin(renderer: &Renderer, places: impl Iterator<Item = DVec2>) -> Self {
         let places: Vec<DVec2> = places.collect();
         let rays = camera_rays(renderer, &places);
-        Self::traced(renderer, rays, &vec![None; places.len()])
+        Self::traced(renderer, rays, (Turn::Refract, &vec![None; places.len()]))
     }
 
     /// The chains that begin at these places, after all these turns.
@@ -64,7 +64,7 @@ impl Front {
         let mut next = Stream::new(rays.len(), rays.columns_used());
         let (scene, fresnel) = (renderer.scene(), renderer.settings().fresnel);
         dispatch!(renderer.token(), l => scatter(l, scene, (fresnel, turn), &mut rays, &mut next));
-        Self::traced(renderer, next, &self.links)
+        Self::traced(renderer, next, (turn, &self.links))
     }
 
     /// Whether no chain is left.
@@ -72,8 +72,8 @@ impl Front {
         self.rays.is_empty()
     }
 
-    /// Finds what the rays hit, that have come from these links.
-    fn traced(renderer: &Renderer, mut rays: Stream, before: &[Option<Link>]) -> Self {
+    /// Finds what the rays hit, that have come from these links by a turn.
+    fn traced(renderer: &Renderer, mut rays: Stream, (turn, before): (Turn, &[Option<Link>])) -> Self {
         dispatch!(renderer.token(), l => intersect::run(l, &renderer.plan().everything, &mut rays));
         let mut links = vec![None; before.len()];
         for at in 0..rays.len() {
@@ -82,7 +82,7 @@ impl Front {
             let (way, round) = before[place].map_or((0, false), |link| {
                 let scene = renderer.scene();
                 let round = scene.surface(link.hit) >= scene.planes && (link.round || link.way == 0);
-                (mixed(link.way, link.hit), round)
+                (mixed(link.way, (turn, link.hit)), round)
             });
             links[place] = Some(Link { origin, direction, hit: rays.value(PRIM, at), way, round });
         }
@@ -90,9 +90,9 @@ impl Front {
     }
 }
 
-/// A way's number with one more primitive (the steps of SplitMix64: Steele, Lea and Flood 2014).
-fn mixed(way: u64, hit: u32) -> u64 {
-    let mixed = (way ^ u64::from(hit)).wrapping_add(0x9e37_79b9_7f4a_7c15);
+/// A way's number with one more turn at a primitive (the steps of SplitMix64: Steele, Lea and Flood 2014).
+fn mixed(way: u64, (turn, hit): (Turn, u32)) -> u64 {
+    let mixed = (way ^ (u64::from(hit) << 1 | turn as u64)).wrapping_add(0x9e37_79b9_7f4a_7c15);
     let mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb)
 }

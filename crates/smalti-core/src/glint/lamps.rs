@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::light::lamps::around_emitters;
-use crate::scene::{Class, Scene};
+use crate::scene::{Class, Scene, View};
 use crate::settings::Settings;
 
 /// Lamps beyond which none is looked for: every pixel that may see one goes through all of them.
@@ -23,19 +23,19 @@ pub struct Target {
     pub radius: f64,
 }
 
-/// The lamps that the camera may see far smaller than a pixel; none where there are too many lamps, or where samples lie
-/// on the pixels' centres.
+/// The lamps that the camera may see far smaller than a pixel; none where there are too many lamps, where samples lie on
+/// the pixels' centres, or without a camera.
 pub fn targets(scene: &Scene, settings: &Settings) -> Vec<Target> {
     let spheres = around_emitters(&scene.lights);
-    if !settings.jitter || spheres.len() > MOST {
+    let Some(view) = scene.views.get(settings.camera).filter(|_| settings.jitter && spheres.len() <= MOST) else {
         return Vec::new();
-    }
+    };
     let targets = (0..).zip(spheres).map(|(emitter, [x, y, z, radius])| {
         let [x, y, z, radius] = [x, y, z, radius].map(f64::from);
         Target { emitter, centre: DVec3::new(x, y, z), radius }
     });
     let casters = casters(scene);
-    targets.filter(|target| smallest_image(scene, settings, &casters, target) < LARGEST).collect()
+    targets.filter(|target| smallest_image((view, settings), &casters, target) < LARGEST).collect()
 }
 
 /// Centre, radius and curvature radius (infinite if flat) of what is specular.
@@ -57,8 +57,7 @@ fn casters(scene: &Scene) -> Vec<(DVec3, f64)> {
 ///
 /// A ball of radius R shows a lamp of radius ρ at distance D as a disc of radius ρ R / 2 D (its focal length is R / 2), a
 /// flat one as what it is, farther away.
-fn smallest_image(scene: &Scene, settings: &Settings, casters: &[(DVec3, f64)], target: &Target) -> f64 {
-    let view = &scene.views[settings.camera];
+fn smallest_image((view, settings): (&View, &Settings), casters: &[(DVec3, f64)], target: &Target) -> f64 {
     let [eye, up] = [view.eye, view.up].map(|v| DVec3::from_array(v.map(f64::from)));
     let pixel = 2.0 * up.length() / f64::from(settings.height);
     let direct = target.radius / target.centre.distance(eye);

@@ -4,7 +4,7 @@
 //! brings it, one in hundreds, as a rare bright sample. But where in its pixel such a glint lies can be found before any
 //! sample is taken: rays through a pixel and their neighbours tell by how much a chain of reflections and refractions
 //! misses the lamp, and Newton's method leads to where it does not ([`search`]). Half of the samples of such a pixel then
-//! go to small rectangles around its glints, and each sample counts by the density of its place ([`Mixture`]).
+//! go to small parallelograms around its glints, and each sample counts by the density of its place ([`Mixture`]).
 //!
 //! The search changes where samples go, never what they are worth: a glint that it misses is found by chance as before.
 
@@ -26,32 +26,43 @@ const BLOCK: u32 = 16;
 /// Share of a pixel's samples that is spread over all of it, where it has glints.
 const SPREAD: f32 = 0.5;
 
-/// Most glints of a pixel.
-const MOST: usize = 4;
-
-/// A part of a pixel that has a glint in it: from `low` to `high`, in pixels from its upper left corner.
+/// A parallelogram that covers a glint, in pixels from the upper left corner of its pixel: `corner` + u `edges[0]` +
+/// v `edges[1]`, u and v in [0, 1). It may reach out of the pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region {
-    /// Left and upper bound.
-    pub low: [f32; 2],
-    /// Right and lower bound.
-    pub high: [f32; 2],
+    /// Where it begins.
+    pub corner: [f32; 2],
+    /// Its edges, not parallel.
+    pub edges: [[f32; 2]; 2],
 }
 
 impl Region {
-    /// Its share of the pixel.
-    pub fn area(&self) -> f32 {
-        (self.high[0] - self.low[0]) * (self.high[1] - self.low[1])
+    /// The rectangle from `low` to `high`.
+    pub fn rectangle(low: [f32; 2], high: [f32; 2]) -> Self {
+        Self { corner: low, edges: [[high[0] - low[0], 0.0], [0.0, high[1] - low[1]]] }
     }
 
-    fn holds(&self, place: [f32; 2]) -> bool {
-        (0..2).all(|k| self.low[k] <= place[k] && place[k] < self.high[k])
+    /// Its size as a share of the pixel's.
+    pub fn area(&self) -> f32 {
+        cross(self.edges[0], self.edges[1]).abs()
+    }
+
+    /// Whether a place is in it.
+    pub fn holds(&self, place: [f32; 2]) -> bool {
+        let [e1, e2] = self.edges;
+        let to = [0, 1].map(|k: usize| place[k] - self.corner[k]);
+        let size = cross(e1, e2);
+        [cross(to, e2) / size, cross(e1, to) / size].iter().all(|x| (0.0..1.0).contains(x))
     }
 
     /// The place in it that a place in the unit square goes to.
-    fn place(&self, unit: [f32; 2]) -> [f32; 2] {
-        [0, 1].map(|k| (self.high[k] - self.low[k]) * unit[k] + self.low[k])
+    pub fn place(&self, [u, v]: [f32; 2]) -> [f32; 2] {
+        [0, 1].map(|k: usize| self.corner[k] + (self.edges[0][k] * u + self.edges[1][k] * v))
     }
+}
+
+fn cross(a: [f32; 2], b: [f32; 2]) -> f32 {
+    a[0] * b[1] - a[1] * b[0]
 }
 
 /// How samples are spread over a pixel that has glints.
@@ -69,18 +80,22 @@ impl Mixture {
         &self.0
     }
 
-    /// The place in the pixel that two numbers in [0, 1) lead to, and what a sample there counts for: 1 / its density.
+    /// The place that two numbers in [0, 1) lead to, and what a sample there counts for: 1 / its density, and nothing where
+    /// it is out of the pixel.
     pub fn sample(&self, [u, v]: [f32; 2]) -> ([f32; 2], f32) {
         let count = self.0.len() as f32;
-        let place = if u < SPREAD {
-            [u / SPREAD, v]
+        let (place, chosen) = if u < SPREAD {
+            ([u / SPREAD, v], None)
         } else {
             let scaled = (u - SPREAD) / (1.0 - SPREAD) * count;
             let number = (scaled as usize).min(self.0.len() - 1);
-            self.0[number].place([scaled - number as f32, v])
+            (self.0[number].place([scaled - number as f32, v]), Some(number))
         };
-        let focused: f32 = self.0.iter().filter(|region| region.holds(place)).map(|region| 1.0 / region.area()).sum();
+        // The region that was chosen holds the place, whatever rounding has done to it.
+        let holds = |(number, region): &(usize, &Region)| chosen == Some(*number) || region.holds(place);
+        let focused: f32 = self.0.iter().enumerate().filter(holds).map(|(_, region)| 1.0 / region.area()).sum();
         let weight = 1.0 / (SPREAD + (1.0 - SPREAD) / count * focused);
+        let weight = if place.iter().all(|x| (0.0..1.0).contains(x)) { weight } else { 0.0 };
         (place, if mutant!("glints_not_weighed") { 1.0 } else { weight })
     }
 }

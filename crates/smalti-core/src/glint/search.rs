@@ -4,7 +4,7 @@ use glam::{DMat2, DVec2};
 
 use super::chain::{Front, Link, Turn};
 use super::lamps::{LARGEST, Target};
-use super::{MOST, Mixture, Region};
+use super::{Mixture, Region};
 use crate::render::Renderer;
 use crate::scene::{Class, Scene};
 use crate::settings::Rect;
@@ -34,6 +34,12 @@ const LARGER: f64 = 1.25;
 /// Least half side of a region, in pixels: the f32 directions of a picture some thousand pixels high are not finer.
 const LEAST: f64 = 2e-4;
 
+/// Most glints of a pixel.
+const MOST: usize = 4;
+
+/// A rectangle so many times as large as the parallelogram around the same glint has that beside it.
+const TILTED: f32 = 3.0;
+
 /// A guess of where a lamp is seen.
 #[derive(Clone, Copy)]
 struct Guess {
@@ -52,7 +58,8 @@ pub fn search(renderer: &Renderer, area: Rect) -> Vec<(u32, u32, Mixture)> {
     explore(renderer, (&pixels, &front), (&mut Vec::new(), longest), &mut found);
     found.sort_by_key(|glint: &Glint| (glint.pixel.1, glint.pixel.0));
     let of_pixels = found.chunk_by(|a, b| a.pixel == b.pixel);
-    let mixture = |of: &[Glint]| Mixture::new(of.iter().map(|glint| glint.region).collect());
+    let regions = |glint: &Glint| [Some(glint.around), glint.tilted].into_iter().flatten();
+    let mixture = |of: &[Glint]| Mixture::new(of.iter().flat_map(regions).collect());
     of_pixels.map(|of| (of[0].pixel.0, of[0].pixel.1, mixture(of))).collect()
 }
 
@@ -85,15 +92,20 @@ fn explore(
 struct Glint {
     pixel: (u32, u32),
     emitter: u32,
-    region: Region,
+    /// The way of its chain.
+    way: u64,
+    /// The rectangle around it, within the pixel.
+    around: Region,
+    /// The parallelogram around it, where that is much smaller.
+    tilted: Option<Region>,
 }
 
 /// Adds a glint, unless it is known already or its pixel has enough of them.
 fn note(found: &mut Vec<Glint>, glint: Glint) {
-    let Region { low, high } = glint.region;
-    let middle = [0, 1].map(|k| f32::midpoint(low[k], high[k]));
+    let middle = glint.around.place([0.5; 2]);
     let of_pixel = || found.iter().filter(|other| other.pixel == glint.pixel);
-    let known = of_pixel().any(|other| other.emitter == glint.emitter && other.region.holds(middle));
+    let same = |other: &Glint| (other.emitter, other.way) == (glint.emitter, glint.way);
+    let known = of_pixel().any(|other| same(other) && other.around.holds(middle));
     if !known && of_pixel().count() < MOST {
         found.push(glint);
     }
@@ -155,8 +167,9 @@ fn met(renderer: &Renderer, turns: &[Turn], guesses: &[Guess]) -> Vec<Glint> {
     let met = guesses.iter().zip(&misses).filter_map(|(guess, miss)| {
         let (miss, link) = miss.as_ref()?;
         let meets = miss.by.length() <= guess.target.radius && shines(renderer.scene(), guess.target, link);
-        let region = guess.region(miss).filter(|_| meets)?;
-        Some(Glint { pixel: guess.pixel, emitter: guess.target.emitter, region })
+        let around = guess.around(miss).filter(|_| meets)?;
+        let tilted = guess.tilted(miss).filter(|tilted| tilted.area() * TILTED < around.area());
+        Some(Glint { pixel: guess.pixel, emitter: guess.target.emitter, way: link.way, around, tilted })
     });
     met.collect()
 }
@@ -177,16 +190,29 @@ impl Guess {
         within.then_some(Self { place, ..*self })
     }
 
-    /// The part of the pixel from which the lamp is met, if small.
-    fn region(&self, miss: &Miss) -> Option<Region> {
+    /// The rectangle in the pixel from which the lamp is met, if small.
+    fn around(&self, miss: &Miss) -> Option<Region> {
         let inverse = miss.inverse()?;
         let half = DVec2::new(inverse.row(0).length(), inverse.row(1).length()) * self.target.radius * LARGER;
         let half = half.max(DVec2::splat(LEAST));
         let middle = self.place - corner(self.pixel);
         let (low, high) = ((middle - half).max(DVec2::ZERO), (middle + half).min(DVec2::ONE));
-        let region = Region { low: low.as_vec2().to_array(), high: high.as_vec2().to_array() };
+        let region = Region::rectangle(low.as_vec2().to_array(), high.as_vec2().to_array());
         let small = low.cmplt(high).all() && 0.0 < region.area() && f64::from(region.area()) <= LARGEST;
         small.then_some(region)
+    }
+
+    /// The parallelogram from which the lamp is met, if it is not too thin and a good part of it is in the pixel.
+    fn tilted(&self, miss: &Miss) -> Option<Region> {
+        let inverse = miss.inverse()?;
+        let edges = [inverse.x_axis, inverse.y_axis].map(|axis| axis * (2.0 * self.target.radius * LARGER));
+        let corner = self.place - corner(self.pixel) - (edges[0] + edges[1]) / 2.0;
+        let longest = edges[0].length().max(edges[1].length());
+        let edges = edges.map(|edge| edge.as_vec2().to_array());
+        let region = Region { corner: corner.as_vec2().to_array(), edges };
+        let inside = |place: [f32; 2]| place.iter().all(|x| (0.0..1.0).contains(x));
+        let within = (0..64).filter(|k| inside(region.place([k % 8, k / 8].map(|k| (k as f32 + 0.5) / 8.0)))).count();
+        (within >= 16 && f64::from(region.area()) >= 2.0 * LEAST * longest).then_some(region)
     }
 }
 
