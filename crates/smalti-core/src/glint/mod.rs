@@ -3,7 +3,7 @@
 //! Shadow rays cannot find this light, and photons never meet a pinhole: only a camera ray that happens to hit the lamp
 //! brings it, one in hundreds, as a rare bright sample. But where in its pixel such a glint lies can be found before any
 //! sample is taken: rays through a pixel and their neighbours tell by how much a chain of reflections and refractions
-//! misses the lamp, and Newton's method leads to where it does not ([`search`]). Half of the samples of such a pixel then
+//! misses the lamp, and Newton's method leads to where it does not (`search.rs`). Half of the samples of such a pixel then
 //! go to small parallelograms around its glints, and each sample counts by the density of its place ([`Mixture`]).
 //!
 //! The search changes where samples go, never what they are worth: a glint that it misses is found by chance as before.
